@@ -47,8 +47,8 @@ public:
 
 /// What both ends must know to open the same channel; travels as JSON in the schedule message.
 struct ChannelAddress {
-  std::string transport;         // "shm", "zmq", "loopback"
-  std::string endpoint;          // zmq: endpoint; loopback: name; shm: path that opens the memory
+  std::string transport = {};    // "shm", "zmq", "loopback"
+  std::string endpoint = {};     // zmq: endpoint; loopback: name; shm: path that opens the memory
   int descriptor = -1;           // shm: inherited file descriptor, or -1 to open `endpoint`
   std::size_t up_capacity = 0;   // bytes of the largest frame from the participant
   std::size_t down_capacity = 0; // bytes of the largest frame from the broker

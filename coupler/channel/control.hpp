@@ -2,25 +2,19 @@
 #pragma once
 
 #include "coupler/protocol/message.hpp"
+#include "coupler/protocol/protocol_error.hpp"
 
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace kerf::coupler {
 
-/// A message from outside that does not follow the protocol; it says what is wrong.
-class ProtocolError : public std::runtime_error {
-public:
-  using std::runtime_error::runtime_error;
-};
-
 /// Parts on the wire of a message, and back. decode() believes nothing: types, sizes, shapes and
 /// the version are checked before any memory is taken.
-/// @throws ProtocolError
+/// @throws ProtocolError; encode() std::invalid_argument when a shape does not fit its values
 std::vector<std::string> encode(const Message& message);
 Message decode(const std::vector<std::string>& parts);
 
@@ -38,7 +32,8 @@ public:
     Message message;
   };
   /// The next message, or nothing when none came within the limit.
-  /// @throws ProtocolError for a malformed message (with the peer in its text)
+  /// @throws ProtocolError for a malformed message (with the peer in its text); the peer was told
+  ///         to stop, with the reason
   std::optional<Incoming> receive(std::chrono::milliseconds limit);
   void send(const std::string& peer, const Message& message);
   std::string endpoint() const; // as bound
@@ -56,8 +51,12 @@ public:
   ControlClient(ControlClient&&) noexcept;
   ControlClient& operator=(ControlClient&&) noexcept;
 
+  /// The next message, or nothing when none came within the limit.
+  /// @throws ProtocolError for a malformed message
   std::optional<Message> receive(std::chrono::milliseconds limit);
   void send(const Message& message);
+  /// True once after the connection has broken: the broker's process is gone.
+  bool lost();
 
 private:
   struct Socket;

@@ -1,0 +1,253 @@
+#include "common/config/case_reader.hpp"
+
+#include "common/config/schema.hpp"
+#include "common/nearest.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace kerf::config {
+namespace {
+
+using nlohmann::json;
+using std::string;
+
+class Checks {
+public:
+  Checks(json& settings, const Document& document, Problems& problems)
+      : settings_(settings), document_(document), problems_(problems),
+        is_plane_(settings["case"]["dimension"] == 2) {
+    for (const auto& [name, participant] : settings["participants"].items())
+      participants_.push_back(name);
+    for (const json& coupling : settings["couplings"])
+      couplings_.push_back(coupling["name"]);
+  }
+
+  void run() {
+    if (is_plane_ && !settings_["case"]["periodic"]["z"].is_null())
+      problems_.add("case.periodic.z", "case.periodic.z is given, but case.dimension = 2.",
+                    "leave it out, or give dimension = 3.");
+    for (auto& [name, participant] : settings_["participants"].items())
+      check_participant("participants." + name, participant);
+    check_couplings();
+    check_measures();
+  }
+
+private:
+  void check_participant(const string& key, json& participant) {
+    if (!participant["command"].is_null()) {
+      if (document_.places.contains(key + ".solver"))
+        problems_.add(key + ".command", key + " has both solver and command.",
+                      "give the name of a solver, or the command line of your own.");
+      participant["solver"] = nullptr;
+    }
+    if (participant["kind"] == "dem")
+      check_particles(key + ".particles", participant["particles"]);
+    else
+      check_elastic(key + ".material", participant["material"]);
+    for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
+      check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
+    for (std::size_t k = 0; k < participant["initial"].size(); ++k)
+      check_initial(fmt::format("{}.initial[{}]", key, k), participant["initial"][k]);
+  }
+
+  void check_particles(const string& key, const json& particles) {
+    const json& lattice = particles["lattice"];
+    if (lattice.is_null() == particles["file"].is_null())
+      problems_.add(
+          key,
+          fmt::format("{} has {} lattice {} file.", key, lattice.is_null() ? "neither" : "both",
+                      lattice.is_null() ? "nor" : "and"),
+          fmt::format("give either a table [{}.lattice] or file = \"packing.txt\".", key));
+    else if (lattice.is_null() && !particles["radius"].is_null())
+      problems_.add(key + ".radius", key + ".radius is given, but the file has the radii.",
+                    "leave radius out.");
+    if (lattice.is_null())
+      return;
+    const string type = lattice["type"];
+    const bool in_plane = type == "triangular" || type == "square";
+    if (type != "chain" && in_plane != is_plane_)
+      problems_.add(key + ".lattice.type",
+                    fmt::format("{}.lattice.type = \"{}\" is not of case.dimension = {}.", key,
+                                type, is_plane_ ? 2 : 3),
+                    is_plane_ ? "give chain, triangular or square." : "give chain, cubic or fcc.");
+    for (std::size_t axis = 1; type == "chain" && axis < lattice["count"].size(); ++axis)
+      if (lattice["count"][axis] != 1) {
+        problems_.add(key + ".lattice.count",
+                      fmt::format("{}.lattice.count = {} is not that of a chain along x.", key,
+                                  value_text(lattice["count"])),
+                      "give 1 for the other axes, for example [80, 1].");
+        break;
+      }
+  }
+
+  void check_elastic(const string& key, const json& material) {
+    const auto given = [&](const char* name) { return !material[name].is_null(); };
+    const bool has_moduli = given("young_modulus") && given("poisson_ratio");
+    const bool has_stiffness = given("C11") && given("C12");
+    const int count = given("young_modulus") + given("poisson_ratio") + given("C11") + given("C12");
+    if (count != 2 || (!has_moduli && !has_stiffness)) {
+      string found;
+      for (const char* name : {"young_modulus", "poisson_ratio", "C11", "C12"})
+        if (given(name))
+          found += (found.empty() ? "" : ", ") + string(name);
+      problems_.add(key,
+                    fmt::format("{} has {} for its elastic constants.", key,
+                                found.empty() ? "nothing" : found),
+                    "give exactly one pair: young_modulus with poisson_ratio, or C11 with C12.");
+    } else if (has_stiffness) {
+      const double C11 = material["C11"], C12 = material["C12"];
+      if (C12 >= C11 || 2.0 * C12 <= -C11) // shear and bulk stiffness of an isotropic solid
+        problems_.add(key + ".C12",
+                      fmt::format("{}.C12 = {} with C11 = {} is not a stable material.", key,
+                                  value_text(C12), value_text(C11)),
+                      "give C12 between -C11 / 2 and C11.");
+    }
+  }
+
+  void check_boundary(const string& key, const json& boundary) {
+    if (boundary.contains("tag") && boundary["tag"].is_null() == boundary["box"].is_null())
+      problems_.add(key,
+                    fmt::format("{} has {} tag {} box.", key,
+                                boundary["tag"].is_null() ? "neither" : "both",
+                                boundary["tag"].is_null() ? "nor" : "and"),
+                    "give the tag of a boundary, or a box around points.");
+    check_components(key + ".components", boundary["components"]);
+    const string motion = boundary["motion"];
+    check_keys_of(key, boundary, "motion", motion,
+                  {{"velocity", {"velocity"}}, {"hann", {"amplitude", "duration"}}});
+  }
+
+  void check_initial(const string& key, const json& initial) {
+    check_components(key + ".component", json::array({initial["component"]}));
+    check_components(key + ".axis", json::array({initial["axis"]}));
+    check_keys_of(
+        key, initial, "kind", initial["kind"],
+        {{"velocity", {"velocity"}}, {"pulse", {"amplitude", "center", "length", "wave_speed"}}});
+  }
+
+  /// Each choice of a key needs its own keys and none of the others'.
+  void check_keys_of(const string& key, const json& table, const string& choice_key,
+                     const string& choice, const std::map<string, std::set<string>>& keys) {
+    for (const auto& [other, names] : keys)
+      for (const string& name : names) {
+        const string full = key + "." + name;
+        if (other == choice && table[name].is_null())
+          problems_.add(
+              full, fmt::format("{} is missing.", full),
+              fmt::format("{} = \"{}\" needs {}.", choice_key, choice, fmt::join(names, ", ")));
+        if (other != choice && !table[name].is_null())
+          problems_.add(full,
+                        fmt::format("{} is given, but {} = \"{}\" does not use it.", full,
+                                    choice_key, choice),
+                        fmt::format("leave it out, or give {} = \"{}\".", choice_key, other));
+      }
+  }
+
+  void check_components(const string& key, const json& components) {
+    for (const json& component : components)
+      if (is_plane_ && component == "z")
+        problems_.add(key, key + " has \"z\", but case.dimension = 2.", "give \"x\" or \"y\".");
+  }
+
+  void check_couplings() {
+    std::set<string> names;
+    for (std::size_t k = 0; k < couplings_.size(); ++k) {
+      const string key = fmt::format("couplings[{}]", k);
+      const json& coupling = settings_["couplings"][k];
+      check_name(key, couplings_[k], "couplings", names);
+      const string first = coupling["between"][0], second = coupling["between"][1];
+      const bool known = check_known(key + ".between", first, "participant", participants_) &
+                         check_known(key + ".between", second, "participant", participants_);
+      if (!known)
+        continue;
+      const string kinds = kind_of(first) + kind_of(second);
+      if (kinds != "demfem" && kinds != "femdem")
+        problems_.add(key + ".between",
+                      fmt::format("{}.between = {} are participants of kind {} and {}.", key,
+                                  value_text(coupling["between"]), kind_of(first), kind_of(second)),
+                      "an overlap needs one dem and one fem participant.");
+    }
+  }
+
+  void check_measures() {
+    std::set<string> names;
+    const Key* kind_key = keys_of("measures[]", "")[1];
+    const std::vector<string>& kinds = kind_key->allowed.choices;
+    for (std::size_t k = 0; k < settings_["measures"].size(); ++k) {
+      const string key = fmt::format("measures[{}]", k);
+      json& measure = settings_["measures"][k];
+      check_name(key, measure["name"], "measures", names);
+      if (measure["kind"].is_null()) {
+        const string name = measure["name"], meant = nearest(name, kinds);
+        if (std::find(kinds.begin(), kinds.end(), name) == kinds.end())
+          problems_.add(key + ".name",
+                        fmt::format("{}.name = \"{}\" is not a kind of measure, and no kind is "
+                                    "given.",
+                                    key, name),
+                        fmt::format("{}give kind: {}.",
+                                    meant.empty() ? "" : "did you mean " + meant + "? Or ",
+                                    kind_key->allowed.text()));
+        measure["kind"] = name;
+      }
+      for (const char* name : {"participant", "reference"})
+        if (!measure[name].is_null())
+          check_known(key + "." + name, measure[name], "participant", participants_);
+      if (!measure["coupling"].is_null())
+        check_known(key + ".coupling", measure["coupling"], "coupling", couplings_);
+      check_expectation(key + ".expect", measure["expect"]);
+    }
+  }
+
+  void check_expectation(const string& key, const json& expect) {
+    if (expect.is_null())
+      return;
+    const json &min = expect["min"], &max = expect["max"];
+    if (min.is_null() && max.is_null())
+      problems_.add(key, key + " has neither min nor max.", "give at least one of them.");
+    else if (!min.is_null() && !max.is_null() && min > max)
+      problems_.add(
+          key, fmt::format("{}.min = {} is above max = {}.", key, value_text(min), value_text(max)),
+          "give min below max.");
+  }
+
+  void check_name(const string& key, const string& name, const string& list,
+                  std::set<string>& names) {
+    if (!names.insert(name).second)
+      problems_.add(key + ".name", fmt::format("two {} are named \"{}\".", list, name),
+                    "give each one a name of its own.");
+  }
+
+  bool check_known(const string& key, const string& name, const string& what,
+                   const std::vector<string>& known) {
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      return true;
+    const string meant = nearest(name, known);
+    problems_.add(key, fmt::format("{} names \"{}\", which is not a {}.", key, name, what),
+                  known.empty()
+                      ? fmt::format("there is no {} in this case.", what)
+                      : fmt::format("{}There {}: {}.",
+                                    meant.empty() ? "" : "did you mean " + meant + "? ",
+                                    known.size() == 1 ? "is" : "are", fmt::join(known, ", ")));
+    return false;
+  }
+
+  string kind_of(const string& participant) const {
+    return settings_["participants"][participant]["kind"];
+  }
+
+  json& settings_;
+  const Document& document_;
+  Problems& problems_;
+  bool is_plane_;
+  std::vector<string> participants_, couplings_;
+};
+
+} // namespace
+
+void check_settings(json& settings, const Document& document, Problems& problems) {
+  Checks(settings, document, problems).run();
+}
+
+} // namespace kerf::config

@@ -1,0 +1,30 @@
+// Reads a case by the table of keys: what is there, of the right type, in range; defaults
+// elsewhere.
+#pragma once
+
+#include "common/config/problems.hpp"
+
+#include <filesystem>
+
+namespace kerf::config {
+
+/// The settings of a case: every key of the table, null where nothing is given.
+///
+/// @param folder    paths of the case are relative to it
+/// @param problems  receives what is wrong; then the settings are incomplete
+nlohmann::json read_settings(const Document& document, const std::filesystem::path& folder,
+                             Problems& problems);
+
+/// Finds what is wrong with settings that are complete: names of participants that are not there,
+/// keys that exclude or need one another, vectors along axes that a plane does not have.
+/// Also fills in the kinds of measures that are their names.
+void check_settings(nlohmann::json& settings, const Document& document, Problems& problems);
+
+/// The settings as TOML, in the order of the table of keys.
+std::string settings_toml(const nlohmann::json& settings);
+
+/// configs/reference.toml: every key with its unit, default, range and meaning, as a case that
+/// loads. Keys without a default that the case does not need are commented out.
+std::string reference_toml();
+
+} // namespace kerf::config

@@ -1,0 +1,174 @@
+// The keys of a participant: its model, and the motions that are prescribed to it.
+#include "common/config/schema_rows.hpp"
+
+#include <iterator>
+
+namespace kerf::config {
+namespace {
+
+std::vector<Key> participant_keys(const std::string& kind) {
+  using enum Type;
+  const bool dem = kind == "dem";
+  const std::string solver = dem ? R"("kerf-dem")" : R"("kerf-fem")";
+  return {
+      {"participants.*.kind", kind, text, "", required, one_of({"dem", "fem"}),
+       dem ? R"("dem")" : R"("fem")", "dem for particles or fem for elements"},
+      {"participants.*.solver", kind, text, "", solver, one_of({solver.substr(1, 8)}), solver,
+       "the program that computes it; command instead starts one of your own"},
+      {"participants.*.command", kind, texts, "", none, anything, R"(["python3", "mine.py"])",
+       "the command line of your own solver, instead of solver"},
+      {"participants.*.threads", kind, integer_or_auto, "", R"("auto")", in(from_one), "1",
+       R"(the number of threads, or "auto" for a fair share of the machine)"},
+  };
+}
+
+std::vector<Key> model_of_particles() {
+  using enum Type;
+  return {
+      {"participants.*.particles", "dem", table, "", tables, anything, "particle set",
+       "the particles: exactly one of lattice and file"},
+      {"participants.*.particles.lattice", "dem", optional_table, "", none, anything, "lattice",
+       "a regular arrangement; its first particle is at the origin", live},
+      {"participants.*.particles.lattice.type", "dem", text, "", required,
+       one_of({"chain", "triangular", "square", "cubic", "fcc"}), R"("triangular")",
+       "the arrangement: chain along x; triangular, square in 2D; cubic, fcc in 3D"},
+      {"participants.*.particles.lattice.spacing", "dem", number, "m", required, in(above_zero),
+       "1e-3", "the distance of nearest neighbours"},
+      {"participants.*.particles.lattice.origin", "dem", vector, "m", required, anything,
+       "[0.0, 0.0]", "the position of the first particle"},
+      {"participants.*.particles.lattice.count", "dem", counts, "", required, in(from_one),
+       "[80, 8]", "the number of particles along each axis; of fcc, of cells with 4 particles"},
+      {"participants.*.particles.file", "dem", path, "", none, anything, R"("packing.txt")",
+       "a text file with lines x y [z] r, in m"},
+      {"participants.*.particles.radius", "dem", number, "m", none, in(above_zero), "0.5e-3",
+       "the radius of lattice particles; half of the spacing when not given"},
+      {"participants.*.material", "dem", table, "", tables, anything, "material",
+       "the particles and their contacts"},
+      {"participants.*.material.density", "dem", number, "kg/m³", required, in(above_zero),
+       "2600.0", "the density of the solid particles"},
+      {"participants.*.material.normal_stiffness", "dem", number, "N/m", required, in(above_zero),
+       "1e10", "the normal stiffness of a contact; in 2D per metre of thickness"},
+      {"participants.*.material.tangential_stiffness", "dem", number, "N/m", required,
+       in(from_zero), "2e9", "the tangential stiffness of a contact; in 2D per metre of thickness"},
+      {"participants.*.material.tensile_strength", "dem", number, "N", none, in(from_zero), "2.9e4",
+       "the normal force that breaks a bond, in 2D per metre; unbreakable when not given"},
+      {"participants.*.material.shear_strength", "dem", number, "N", none, in(from_zero), "2.9e4",
+       "the tangential force that breaks a bond, in 2D per metre; unbreakable when not given"},
+      {"participants.*.material.friction", "dem", number, "", "0.0", in(from_zero), "0.839",
+       "the Coulomb friction coefficient of contacts without a bond"},
+      {"participants.*.bonds", "dem", table, "", tables, anything, "bonds",
+       "which particles are bonded"},
+      {"participants.*.bonds.gap_tolerance", "dem", number, "", "0.001", in(from_zero), "1e-3",
+       "the largest gap that is bonded at the start, over the sum of the two radii"},
+      {"participants.*.damping", "dem", table, "", tables, anything, "damping",
+       "numerical damping"},
+      {"participants.*.damping.kind", "dem", text, "", R"("nonviscous")", one_of({"nonviscous"}),
+       R"("nonviscous")", "the law: nonviscous is a share of the resultant, against the motion"},
+      {"participants.*.damping.translation", "dem", number, "", "0.0", in(share), "0.2",
+       "the share of the resultant force that opposes the motion"},
+      {"participants.*.damping.rotation", "dem", number, "", "0.0", in(share), "0.2",
+       "the share of the resultant moment that opposes the rotation"},
+  };
+}
+
+std::vector<Key> model_of_mesh() {
+  using enum Type;
+  const Range poisson{.least = -1.0, .most = 0.5, .without_least = true, .without_most = true};
+  return {
+      {"participants.*.mesh", "fem", table, "", tables, anything, "mesh", "the elements"},
+      {"participants.*.mesh.type", "fem", text, "", R"("box")", one_of({"box"}), R"("box")",
+       "the kind of mesh: box is structured, with the tags left, right, bottom, top, back, front"},
+      {"participants.*.mesh.origin", "fem", vector, "m", required, anything, "[0.06975, 0.0]",
+       "the lower corner"},
+      {"participants.*.mesh.size", "fem", vector, "m", required, in(above_zero),
+       "[0.08, 0.006928203230275509]", "the length of each side"},
+      {"participants.*.mesh.count", "fem", counts, "", required, in(from_one), "[80, 7]",
+       "the number of elements along each axis"},
+      {"participants.*.material", "fem", table, "", tables, anything, "material",
+       "the solid: exactly one pair of young_modulus with poisson_ratio, or C11 with C12"},
+      {"participants.*.material.model", "fem", text, "", R"("linear_elastic")",
+       one_of({"linear_elastic"}), R"("linear_elastic")", "the constitutive law"},
+      {"participants.*.material.density", "fem", number, "kg/m³", required, in(above_zero),
+       "2358.0", "the bulk density; next to particles theirs with the pores"},
+      {"participants.*.material.young_modulus", "fem", number, "Pa", none, in(above_zero),
+       "1.247e10", "Young's modulus; in 2D of plane strain", live},
+      {"participants.*.material.poisson_ratio", "fem", number, "", none, in(poisson), "0.2",
+       "Poisson's ratio; in 2D of plane strain", live},
+      {"participants.*.material.C11", "fem", number, "Pa", none, in(above_zero), "1.3856e10",
+       "the stiffness lambda + 2 mu of uniaxial strain"},
+      {"participants.*.material.C12", "fem", number, "Pa", none, anything, "3.4641e9",
+       "the stiffness lambda across uniaxial strain"},
+  };
+}
+
+std::vector<Key> motion_keys(const std::string& kind) {
+  using enum Type;
+  const bool dem = kind == "dem";
+  const std::string everywhere = "[[-1.0, -1.0], [1.0, 1.0]]";
+  std::vector<Key> keys = {
+      {"participants.*.boundary", kind, list, "", empty, anything, "boundary",
+       "a prescribed motion"},
+      {"participants.*.boundary[].box", kind, box, "m", dem ? required : none, anything,
+       dem ? "[[-1e-4, -1e-4], [6e-4, 8e-3]]" : everywhere,
+       "the lower and upper corner around the points that it holds, before they move"},
+      {"participants.*.boundary[].components", kind, texts, "", none,
+       dem ? one_of({"x", "y", "z", "rotation"}) : one_of({"x", "y", "z"}), R"(["x"])",
+       "the components that it prescribes; every displacement when not given"},
+      {"participants.*.boundary[].motion", kind, text, "", required,
+       one_of({"fixed", "velocity", "hann"}), dem ? R"("hann")" : R"("fixed")",
+       "the motion: fixed, a constant velocity, or one hann pulse of displacement"},
+      {"participants.*.boundary[].velocity", kind, vector, "m/s", none, anything, "[1.0, 0.0]",
+       "the velocity of motion = \"velocity\""},
+      {"participants.*.boundary[].amplitude", kind, vector, "m", none, anything, "[1e-8, 0.0]",
+       "the largest displacement of motion = \"hann\"", dem},
+      {"participants.*.boundary[].duration", kind, number, "s", none, in(above_zero), "1e-5",
+       "how long the pulse of motion = \"hann\" takes", dem},
+      {"participants.*.initial", kind, list, "", empty, anything, "initial motion",
+       "a motion at the start; several are added"},
+      {"participants.*.initial[].box", kind, box, "m", none, anything, everywhere,
+       "the lower and upper corner around its points; all when not given"},
+      {"participants.*.initial[].kind", kind, text, "", required, one_of({"velocity", "pulse"}),
+       R"("velocity")",
+       "what it sets: a uniform velocity, or a one-way Hann pulse of displacement"},
+      {"participants.*.initial[].velocity", kind, vector, "m/s", none, anything, "[0.0, 0.0]",
+       "the velocity of kind = \"velocity\"", live},
+      {"participants.*.initial[].amplitude", kind, number, "m", none, anything, "1e-8",
+       "the largest displacement of the pulse"},
+      {"participants.*.initial[].center", kind, number, "m", none, anything, "0.02",
+       "where along the axis the pulse is"},
+      {"participants.*.initial[].length", kind, number, "m", none, in(above_zero), "0.016",
+       "the full width of the pulse"},
+      {"participants.*.initial[].wave_speed", kind, number, "m/s", none, anything, "2424.0",
+       "the speed of the pulse; negative against the axis"},
+      {"participants.*.initial[].spacing", kind, number, "m", "0.0", in(from_zero), "1e-3",
+       "the distance of the points along the axis, for their own dispersion; 0 for a continuum"},
+      {"participants.*.initial[].component", kind, text, "", R"("x")", one_of({"x", "y", "z"}),
+       R"("x")", "the direction of the displacement"},
+      {"participants.*.initial[].axis", kind, text, "", R"("x")", one_of({"x", "y", "z"}), R"("x")",
+       "the axis along which the pulse travels"},
+  };
+  if (!dem)
+    keys.insert(keys.begin() + 1,
+                {"participants.*.boundary[].tag", kind, text, "", none, anything, R"("right")",
+                 "the tag of the boundary that it holds; exactly one of tag and box", live});
+  return keys;
+}
+
+std::vector<Key> joined(std::vector<std::vector<Key>> parts) {
+  std::vector<Key> keys;
+  for (std::vector<Key>& part : parts)
+    std::move(part.begin(), part.end(), std::back_inserter(keys));
+  return keys;
+}
+
+} // namespace
+
+std::vector<Key> particle_keys() {
+  return joined({participant_keys("dem"), model_of_particles(), motion_keys("dem")});
+}
+
+std::vector<Key> mesh_keys() {
+  return joined({participant_keys("fem"), model_of_mesh(), motion_keys("fem")});
+}
+
+} // namespace kerf::config

@@ -1,0 +1,27 @@
+// Packings as text: one particle a line.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace kerf {
+
+/// A packing file that cannot be used; what() begins with file:line where there is a line.
+class PackingError : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Packing {
+  std::vector<double> positions; // [n][dim] m
+  std::vector<double> radii;     // [n] m
+};
+
+/// Reads lines of `x y r` (dim 2) or `x y z r` (dim 3), in metres. `#` starts a comment; empty
+/// lines count for nothing.
+/// @throws PackingError when the file cannot be read or holds no particle, or a line has another
+///         number of values, a value that is not a finite number, or a radius that is not positive
+Packing read_packing(const std::filesystem::path& path, int dim);
+
+} // namespace kerf

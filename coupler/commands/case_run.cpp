@@ -1,0 +1,80 @@
+#include "coupler/commands/case_run.hpp"
+
+#include "common/exit_code.hpp"
+#include "coupler/broker/process_supervisor.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+
+namespace kerf::commands {
+
+CaseFile read_case(const RunOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.transport.empty())
+    overrides.push_back("case.transport=" + options.transport);
+  return CaseFile::read(options.case_file, overrides);
+}
+
+nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
+                             bool plan_only, decltype(coupler::RunSetup::progress) progress) {
+  const nlohmann::json& settings = case_file.settings();
+  coupler::ProcessSupervisor supervisor(
+      settings.at("participants"), std::filesystem::read_symlink("/proc/self/exe").parent_path(),
+      run_folder / "logs");
+  coupler::Broker broker({.settings = settings,
+                          .run_folder = run_folder,
+                          .plan_only = plan_only,
+                          .transport = settings.at("case").at("transport"),
+                          .progress = std::move(progress)},
+                         supervisor);
+  try {
+    nlohmann::json record = broker.run();
+    supervisor.stop(std::chrono::seconds(5));
+    return record;
+  } catch (...) {
+    supervisor.stop(std::chrono::milliseconds(300)); // they were told; who hangs is killed
+    throw;
+  }
+}
+
+int guarded(const std::function<int()>& body, const CaseFile*& case_file) {
+  const auto say = [](const std::string& sentence) {
+    fmt::print(stderr, "{}\n", sentence);
+    std::fflush(stderr);
+  };
+  try {
+    return body();
+  } catch (const ConfigError& error) {
+    say(error.what());
+    return exit_code::bad_input;
+  } catch (const coupler::RunError& error) {
+    const std::string sentence = error.what();
+    if (error.kind() == coupler::ErrorKind::bad_input && case_file != nullptr) {
+      const auto line_break = sentence.find('\n');
+      const std::string fix = line_break == std::string::npos
+                                  ? "see configs/reference.toml for what is allowed"
+                                  : sentence.substr(line_break + 1);
+      say(case_file
+              ->error(error.key(), error.key() + ": " + sentence.substr(0, line_break) + ".",
+                      fix + ".")
+              .what());
+      return exit_code::bad_input;
+    }
+    say("kerf: " + sentence + ".");
+    return exit_code::run_failed;
+  } catch (const coupler::Interrupted& interrupted) {
+    const bool by_user = interrupted.signal() == SIGINT;
+    say(fmt::format("kerf: the run was ended by {} {}; its histories and frames up to then are "
+                    "kept.",
+                    by_user ? "Ctrl-C" : "signal " + std::to_string(interrupted.signal()),
+                    interrupted.what()));
+    return by_user ? exit_code::interrupted : exit_code::terminated;
+  } catch (const std::exception& error) {
+    say(fmt::format("kerf: {}.", error.what()));
+    return exit_code::run_failed;
+  }
+}
+
+} // namespace kerf::commands

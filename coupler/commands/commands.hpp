@@ -1,0 +1,23 @@
+// The verbs of the program kerf. Each returns the exit code of the process.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kerf::commands {
+
+struct RunOptions {
+  std::filesystem::path case_file;
+  std::filesystem::path out;          // empty: results/<case>
+  std::vector<std::string> overrides; // key=value
+  std::string transport;              // empty: what the case says
+};
+
+/// Launches every participant, brokers the run, writes the results, prints the measures.
+int run(const RunOptions& options);
+
+/// Does all of a run but its steps, and prints the plan.
+int check(const RunOptions& options);
+
+} // namespace kerf::commands

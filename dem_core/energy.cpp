@@ -1,0 +1,98 @@
+#include "dem_core/energy.hpp"
+
+#include "common/ordered_sum.hpp"
+
+namespace kerf::dem {
+
+namespace {
+
+/// A sum term that starts at zero, which an Eigen vector does not.
+template <int dim> struct Total {
+  Vec<dim> value = Vec<dim>::Zero();
+  Total& operator+=(const Total& other) {
+    value += other.value;
+    return *this;
+  }
+};
+
+double half_square_over(double square, double stiffness) {
+  return stiffness > 0.0 ? 0.5 * square / stiffness : 0.0;
+}
+
+/// Half of the work of a force over the whole step, on each side of t_n.
+template <class Vector>
+void add_halves(StepWork& work, double Work::*book, const Vector& force, const Vector& before,
+                const Vector& after, double time_step) {
+  work.before.*book += 0.5 * time_step * force.dot(before);
+  work.after.*book += 0.5 * time_step * force.dot(after);
+}
+
+} // namespace
+
+template <int dim> double kinetic_energy(const Particles<dim>& p) {
+  return ordered_sum(p.size(), [&](std::size_t i) {
+    return 0.5 * p.mass[i] * p.velocity_before[i].dot(p.velocity[i]) +
+           0.5 * p.inertia[i] * p.angular_velocity_before[i].dot(p.angular_velocity[i]);
+  });
+}
+
+template <int dim> double elastic_energy(const Contacts<dim>& c) {
+  return ordered_sum(c.size(), [&](std::size_t k) {
+    const double F_n = c.normal_force[k];
+    return c.weight[k] *
+           (half_square_over(F_n * F_n, c.normal_stiffness[k]) +
+            half_square_over(c.shear_force[k].squaredNorm(), c.tangential_stiffness[k]));
+  });
+}
+
+template <int dim> Vec<dim> momentum(const Particles<dim>& p) {
+  return ordered_sum(p.size(),
+                     [&](std::size_t i) {
+                       return Total<dim>{0.5 * p.mass[i] * (p.velocity_before[i] + p.velocity[i])};
+                     })
+      .value;
+}
+
+template <int dim>
+StepWork step_work(const Particles<dim>& p, const Loads<dim>& loads, const Boundary<dim>& boundary,
+                   std::span<const std::uint32_t> touched, double time_step) {
+  const auto prescribed = boundary.particles();
+  StepWork work = ordered_sum(prescribed.size(), [&](std::size_t entry) {
+    const std::uint32_t i = prescribed[entry];
+    const Vec<dim> a = (p.velocity[i] - p.velocity_before[i]) / time_step;
+    Vec<dim> reaction = p.mass[i] * a - loads.force[i] - loads.interface_force[i]; // N
+    for (int axis = 0; axis < dim; ++axis)
+      if (!boundary.prescribes(i, axis))
+        reaction[axis] = 0.0;
+    StepWork one;
+    add_halves(one, &Work::external, reaction, p.velocity_before[i], p.velocity[i], time_step);
+    return one;
+  });
+  work += ordered_sum(touched.size(), [&](std::size_t entry) {
+    const std::uint32_t i = touched[entry];
+    StepWork one;
+    add_halves(one, &Work::interface, loads.interface_force[i], p.velocity_before[i], p.velocity[i],
+               time_step);
+    return one;
+  });
+  work += ordered_sum(loads.damping_force.size(), [&](std::size_t i) {
+    StepWork one;
+    add_halves(one, &Work::damping, loads.damping_force[i], p.velocity_before[i], p.velocity[i],
+               time_step);
+    add_halves(one, &Work::damping, loads.damping_moment[i], p.angular_velocity_before[i],
+               p.angular_velocity[i], time_step);
+    return one;
+  });
+  return work;
+}
+
+#define KERF_INSTANTIATE(dim)                                                                      \
+  template double kinetic_energy<dim>(const Particles<dim>&);                                      \
+  template double elastic_energy<dim>(const Contacts<dim>&);                                       \
+  template Vec<dim> momentum<dim>(const Particles<dim>&);                                          \
+  template StepWork step_work<dim>(const Particles<dim>&, const Loads<dim>&, const Boundary<dim>&, \
+                                   std::span<const std::uint32_t>, double);
+KERF_INSTANTIATE(2)
+KERF_INSTANTIATE(3)
+
+} // namespace kerf::dem

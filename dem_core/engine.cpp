@@ -1,0 +1,230 @@
+#include "dem_core/engine.hpp"
+
+#include "common/ordered_sum.hpp"
+#include "dem_core/damping.hpp"
+#include "dem_core/initial.hpp"
+#include "dem_core/integrate.hpp"
+#include "dem_core/time_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace kerf::dem {
+
+namespace {
+
+/// Gap up to which pairs are listed, m. A tenth of a diameter: the list of a bonded lattice holds
+/// its bonds only, and is made again when a particle has moved by a twentieth.
+double skin_width(std::span<const double> radius) {
+  return 0.2 * std::accumulate(radius.begin(), radius.end(), 0.0) /
+         static_cast<double>(radius.size());
+}
+
+void check(const Material& material) {
+  const auto must = [](bool holds, const char* what, double value) {
+    if (!holds)
+      throw std::invalid_argument(fmt::format("{}, not {}", what, value));
+  };
+  must(material.normal_stiffness > 0.0 && std::isfinite(material.normal_stiffness),
+       "normal_stiffness must be positive", material.normal_stiffness);
+  must(material.tangential_stiffness >= 0.0 && std::isfinite(material.tangential_stiffness),
+       "tangential_stiffness must not be negative", material.tangential_stiffness);
+  must(material.tensile_strength >= 0.0, "tensile_strength must not be negative",
+       material.tensile_strength);
+  must(material.shear_strength >= 0.0, "shear_strength must not be negative",
+       material.shear_strength);
+  must(material.friction >= 0.0, "friction must not be negative", material.friction);
+}
+
+} // namespace
+
+template <int dim>
+Engine<dim>::Engine(const Settings<dim>& settings)
+    : material_(settings.material), damping_(settings.damping),
+      shear_increment_(settings.shear_increment), period_(settings.period),
+      particles_(
+          make_particles<dim>(settings.positions, settings.radii, settings.material.density)),
+      boundary_(settings.boundary, particles_.reference),
+      start_rotation_(particles_.size(), Rot<dim>::Zero()), is_touched_(particles_.size(), 0) {
+  check(material_);
+  const double width = skin_width(particles_.radius);
+  contacts_ = make_contacts(particles_, material_, settings.gap_tolerance, width, period_);
+  skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
+  bonds_at_start_ = contacts_.bonds();
+  start_rotation_ = apply_initial_conditions<dim>(settings.initial, particles_);
+  loads_.force.assign(size(), Vec<dim>::Zero());
+  loads_.moment.assign(size(), Rot<dim>::Zero());
+  loads_.interface_force.assign(size(), Vec<dim>::Zero());
+}
+
+template <int dim> double Engine<dim>::stiffness(std::size_t i) const {
+  double sum = 0.0;
+  int count = 0;
+  for (std::uint32_t e = contacts_.offset[i]; e < contacts_.offset[i + 1]; ++e) {
+    const std::uint32_t k = contacts_.incidence[e] >> 1;
+    if (contacts_.bonded[k]) {
+      sum += contacts_.normal_stiffness[k];
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : material_.normal_stiffness;
+}
+
+template <int dim> double Engine<dim>::memory() const {
+  constexpr std::size_t vec = sizeof(Vec<dim>), rot = sizeof(Rot<dim>), number = sizeof(double);
+  constexpr std::size_t particle = 8 * vec + 6 * rot + 4 * number + 16;
+  constexpr std::size_t contact = 3 * vec + rot + 11 * number + 24;
+  return static_cast<double>(size() * particle + contacts_.size() * contact);
+}
+
+template <int dim> void Engine<dim>::set_weights(std::span<const double> weight) {
+  blend(particles_, weight);
+  blend(contacts_, particles_);
+}
+
+template <int dim> StepLimit Engine<dim>::step_limit() const {
+  std::vector<double> sums(size());
+  const auto count = static_cast<std::int64_t>(size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < count; ++i)
+    sums[i] = row_sum(contacts_, particles_, boundary_, i);
+  const auto largest = std::max_element(sums.begin(), sums.end());
+  return {*largest, fmt::format("particle {}", largest - sums.begin())};
+}
+
+template <int dim>
+void Engine<dim>::inverse_mass(std::span<const std::uint32_t> points, std::span<double> out) const {
+  assert(out.size() == points.size() * dim);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (int a = 0; a < dim; ++a)
+      out[k * dim + a] =
+          boundary_.prescribes(points[k], a) ? 0.0 : 1.0 / particles_.mass[points[k]];
+}
+
+template <int dim>
+void Engine<dim>::omega2(std::span<const std::uint32_t> points, std::span<double> out) const {
+  assert(out.size() == points.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    out[k] = row_sum(contacts_, particles_, boundary_, points[k]);
+}
+
+template <int dim> void Engine<dim>::start(double time_step) {
+  if (!(time_step > 0.0) || !std::isfinite(time_step))
+    throw std::invalid_argument(fmt::format("time step {} s must be positive", time_step));
+  time_step_ = time_step;
+  step_ = 0;
+  boundary_.advance(0, time_step);
+}
+
+template <int dim>
+void Engine<dim>::motion(std::span<const std::uint32_t> points, std::span<double> position,
+                         std::span<double> velocity) const {
+  assert(position.size() == points.size() * dim && velocity.size() == points.size() * dim);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::uint32_t i = points[k];
+    for (int a = 0; a < dim; ++a) {
+      position[k * dim + a] = particles_.reference[i][a] + particles_.displacement[i][a];
+      velocity[k * dim + a] =
+          boundary_.prescribes(i, a) ? boundary_.velocity(i)[a] : particles_.velocity[i][a];
+    }
+  }
+}
+
+template <int dim> void Engine<dim>::compute_own_forces() {
+  if (forces_are_current_)
+    return;
+  if (skin_.is_worn(particles_.displacement)) {
+    renew_contacts(contacts_, particles_, material_, skin_.width(), period_);
+    skin_ = Skin<dim>(skin_.width(), particles_.displacement);
+    ++renewals_;
+  }
+  // The increment of the first step is the displacement from the reference configuration.
+  const Increment<dim> increment =
+      step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0}
+                 : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_};
+  update_contacts(contacts_, particles_, increment, shear_increment_, material_.friction);
+  gather_contacts(contacts_, loads_);
+  add_damping(damping_, particles_, loads_);
+  forces_are_current_ = true;
+}
+
+template <int dim>
+void Engine<dim>::own_forces(std::span<const std::uint32_t> points, std::span<double> force) const {
+  assert(force.size() == points.size() * dim);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (int a = 0; a < dim; ++a)
+      force[k * dim + a] = loads_.force[points[k]][a];
+}
+
+template <int dim>
+void Engine<dim>::add_interface_forces(std::span<const std::uint32_t> points,
+                                       std::span<const double> force) {
+  assert(force.size() == points.size() * dim);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::uint32_t i = points[k];
+    for (int a = 0; a < dim; ++a)
+      loads_.interface_force[i][a] += force[k * dim + a];
+    if (!is_touched_[i]) {
+      is_touched_[i] = 1;
+      touched_.push_back(i);
+    }
+  }
+}
+
+template <int dim> void Engine<dim>::integrate() {
+  assert(time_step_ > 0.0 && forces_are_current_);
+  dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0);
+  book_step();
+  for (const std::uint32_t i : touched_) {
+    loads_.interface_force[i].setZero();
+    is_touched_[i] = 0;
+  }
+  touched_.clear();
+  ++step_;
+  boundary_.advance(step_, time_step_);
+  forces_are_current_ = false;
+}
+
+template <int dim> void Engine<dim>::book_step() {
+  const StepWork step = step_work(particles_, loads_, boundary_, touched_, time_step_);
+  work_ = work_ahead_;
+  work_ += step.before;
+  work_ahead_ = work_;
+  work_ahead_ += step.after;
+}
+
+template <int dim> Energies Engine<dim>::energies() const {
+  const auto total = [](const std::vector<double>& loss) {
+    return ordered_sum(loss.size(), [&](std::size_t k) { return loss[k]; });
+  };
+  Energies energies;
+  energies.kinetic = kinetic_energy(particles_);
+  energies.elastic = elastic_energy(contacts_);
+  energies.external_work = work_.external;
+  energies.interface_work = work_.interface;
+  energies.damping_dissipation = -work_.damping;
+  energies.friction_dissipation = contacts_.lost_friction + total(contacts_.friction_loss);
+  energies.fracture_dissipation = total(contacts_.fracture_loss);
+  return energies;
+}
+
+template <int dim> Vec<dim> Engine<dim>::momentum() const {
+  return dem::momentum(particles_);
+}
+
+template <int dim> std::optional<std::uint32_t> Engine<dim>::first_not_finite() const {
+  for (std::uint32_t i = 0; i < size(); ++i)
+    if (!particles_.displacement[i].allFinite() || !particles_.angular_velocity[i].allFinite())
+      return i;
+  return std::nullopt;
+}
+
+template class Engine<2>;
+template class Engine<3>;
+
+} // namespace kerf::dem

@@ -1,0 +1,107 @@
+// The particle engine: a model, its state, and the calls of one time step in their order.
+#pragma once
+
+#include "dem_core/boundary.hpp"
+#include "dem_core/contact.hpp"
+#include "dem_core/contact_forces.hpp"
+#include "dem_core/energy.hpp"
+#include "dem_core/particles.hpp"
+#include "dem_core/settings.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kerf::dem {
+
+struct StepLimit {
+  double omega2 = 0.0;    // bound of the largest eigenvalue of M^-1 K, rad²/s²
+  std::string limited_by; // the particle that has it
+};
+
+/// Flat arrays of points are row-major, [points][dim]. A step is
+///
+///     engine.motion(…);               // x^n, v^(n-1/2)
+///     engine.compute_own_forces();
+///     engine.own_forces(…);           // if somebody needs them
+///     engine.add_interface_forces(…); // if there are any
+///     engine.integrate();             // a, v^(n+1/2), x^(n+1)
+///     engine.energies();              // of t_n, if wanted
+template <int dim> class Engine {
+public:
+  /// @throws std::invalid_argument when the model cannot exist: see make_particles(),
+  ///         make_contacts(); also for a stiffness that is not positive
+  explicit Engine(const Settings<dim>& settings);
+
+  std::size_t size() const noexcept { return particles_.size(); }
+  const Particles<dim>& particles() const noexcept { return particles_; }
+  /// As of the last compute_own_forces().
+  const Contacts<dim>& contacts() const noexcept { return contacts_; }
+  const Boundary<dim>& boundary() const noexcept { return boundary_; }
+
+  /// Mean normal stiffness of the bonds and contacts of particle i; of the material if it has
+  /// none, N/m.
+  double stiffness(std::size_t i) const;
+  std::size_t bonds_at_start() const noexcept { return bonds_at_start_; }
+  std::size_t bonds() const noexcept { return contacts_.bonds(); }
+  std::size_t renewals() const noexcept { return renewals_; } // of the list of contacts
+  double memory() const;                                      // of the large arrays, bytes
+
+  /// Shares of the particles in the blended virtual work, before start().
+  /// @param weight  [size] > 0; empty: one everywhere
+  void set_weights(std::span<const double> weight);
+
+  StepLimit step_limit() const;
+  /// Blended inverse mass, 0 where prescribed, 1/kg.
+  void inverse_mass(std::span<const std::uint32_t> points, std::span<double> out) const;
+  /// Own row sum of M^-1 K of each point, rad²/s²; [points]. See row_sum().
+  void omega2(std::span<const std::uint32_t> points, std::span<double> out) const;
+
+  /// @param time_step  s, > 0; it is not compared with step_limit() here
+  void start(double time_step);
+
+  /// x^n in m and v^(n-1/2) in m/s (v^0 in the first step); prescribed components give v^(n+1/2).
+  void motion(std::span<const std::uint32_t> points, std::span<double> position,
+              std::span<double> velocity) const;
+  /// Contacts and damping at x^n. A second call in the same step changes nothing.
+  void compute_own_forces();
+  /// Everything but the interface force, N.
+  void own_forces(std::span<const std::uint32_t> points, std::span<double> force) const;
+  void add_interface_forces(std::span<const std::uint32_t> points, std::span<const double> force);
+  void integrate();
+
+  /// Of t_n, after integrate() of step n.
+  Energies energies() const;
+  Vec<dim> momentum() const;
+
+  /// First particle whose position or rotation rate is not finite.
+  std::optional<std::uint32_t> first_not_finite() const;
+
+private:
+  void book_step();
+
+  Material material_;
+  Damping damping_;
+  ShearIncrement shear_increment_;
+  Period<dim> period_;
+  Particles<dim> particles_;
+  Boundary<dim> boundary_;
+  Contacts<dim> contacts_;
+  Skin<dim> skin_;
+  std::vector<Rot<dim>> start_rotation_; // made before the start, rad
+  std::size_t bonds_at_start_ = 0;
+  std::size_t renewals_ = 0;
+
+  double time_step_ = 0.0;
+  std::uint64_t step_ = 0;
+  bool forces_are_current_ = false;
+  Loads<dim> loads_;
+  std::vector<std::uint32_t> touched_; // particles with an interface force
+  std::vector<std::uint8_t> is_touched_;
+  Work work_;       // until t_n
+  Work work_ahead_; // until t_(n+1/2)
+};
+
+} // namespace kerf::dem

@@ -1,0 +1,47 @@
+// Which particles are close enough to touch before the list is made again.
+#pragma once
+
+#include "common/vec.hpp"
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kerf::dem {
+
+/// Two particles, first < second.
+struct Pair {
+  std::uint32_t first, second;
+  auto operator<=>(const Pair&) const = default;
+};
+
+/// All pairs with a gap, distance - (r_i + r_j), of at most `reach`, in ascending order.
+/// Particles whose position is not finite have no neighbours.
+/// @param position  [n] m
+/// @param radius    [n] m
+/// @throws std::invalid_argument when a period is shorter than twice the largest distance that
+///         counts: a particle would then touch two images of another
+template <int dim>
+std::vector<Pair> find_pairs(std::span<const Vec<dim>> position, std::span<const double> radius,
+                             double reach, const Period<dim>& period);
+
+/// Tells when a list of pairs that was made with a skin has to be made again.
+template <int dim> class Skin {
+public:
+  Skin() = default;
+  /// @param width         gap up to which the list holds pairs, m
+  /// @param displacement  [n] when the list was made, m
+  Skin(double width, std::span<const Vec<dim>> displacement)
+      : width_(width), displacement_(displacement.begin(), displacement.end()) {}
+
+  double width() const noexcept { return width_; }
+  /// True as soon as one particle has moved by more than half the width.
+  bool is_worn(std::span<const Vec<dim>> displacement) const;
+
+private:
+  double width_ = 0.0;
+  std::vector<Vec<dim>> displacement_;
+};
+
+} // namespace kerf::dem

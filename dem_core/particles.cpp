@@ -1,0 +1,69 @@
+#include "dem_core/particles.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace kerf::dem {
+
+template <int dim>
+Particles<dim> make_particles(std::span<const Vec<dim>> positions, std::span<const double> radii,
+                              double density) {
+  const std::size_t n = positions.size();
+  if (n == 0)
+    throw std::invalid_argument("there are no particles");
+  if (radii.size() != n)
+    throw std::invalid_argument(fmt::format("{} positions but {} radii", n, radii.size()));
+  if (!(density > 0.0) || !std::isfinite(density))
+    throw std::invalid_argument(fmt::format("density {} kg/m³ must be positive", density));
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!positions[i].allFinite())
+      throw std::invalid_argument(fmt::format("the position of particle {} is not finite", i));
+    if (!(radii[i] > 0.0) || !std::isfinite(radii[i]))
+      throw std::invalid_argument(
+          fmt::format("radius {} m of particle {} must be positive", radii[i], i));
+  }
+
+  Particles<dim> particles;
+  particles.reference.assign(positions.begin(), positions.end());
+  particles.radius.assign(radii.begin(), radii.end());
+  particles.density = density;
+  particles.weight.resize(n);
+  particles.mass.resize(n);
+  particles.inertia.resize(n);
+  particles.displacement.assign(n, Vec<dim>::Zero());
+  particles.velocity.assign(n, Vec<dim>::Zero());
+  particles.angular_velocity.assign(n, Rot<dim>::Zero());
+  particles.velocity_before = particles.velocity;
+  particles.angular_velocity_before = particles.angular_velocity;
+  blend(particles, std::span<const double>());
+  return particles;
+}
+
+template <int dim> void blend(Particles<dim>& particles, std::span<const double> weight) {
+  if (!weight.empty() && weight.size() != particles.size())
+    throw std::invalid_argument(
+        fmt::format("{} weights for {} particles", weight.size(), particles.size()));
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const double w = weight.empty() ? 1.0 : weight[i];
+    if (!(w > 0.0) || !std::isfinite(w))
+      throw std::invalid_argument(fmt::format("weight {} of particle {} must be positive", w, i));
+    const double r = particles.radius[i];
+    const double volume =
+        dim == 2 ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    particles.weight[i] = w;
+    particles.mass[i] = w * volume * particles.density;
+    particles.inertia[i] = (dim == 2 ? 0.5 : 0.4) * particles.mass[i] * r * r;
+  }
+}
+
+#define KERF_INSTANTIATE(dim)                                                                      \
+  template Particles<dim> make_particles<dim>(std::span<const Vec<dim>>, std::span<const double>,  \
+                                              double);                                             \
+  template void blend<dim>(Particles<dim>&, std::span<const double>);
+KERF_INSTANTIATE(2)
+KERF_INSTANTIATE(3)
+
+} // namespace kerf::dem

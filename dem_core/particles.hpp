@@ -1,0 +1,45 @@
+// The bodies of the model: discs (per metre of thickness) or spheres, their masses and motion.
+#pragma once
+
+#include "common/vec.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace kerf::dem {
+
+/// All arrays have one entry a particle. Positions are kept as reference + displacement, so that
+/// small displacements lose no digits; they are never wrapped into a period.
+template <int dim> struct Particles {
+  std::vector<Vec<dim>> reference; // m
+  std::vector<double> radius;      // m
+  double density = 0.0;            // kg/m³
+
+  std::vector<double> weight;  // share in the blended virtual work, > 0
+  std::vector<double> mass;    // blended, kg; pi r² rho or 4/3 pi r³ rho
+  std::vector<double> inertia; // blended, kg m²; m r² / 2 or 2/5 m r²
+
+  std::vector<Vec<dim>> displacement;     // u^n, m
+  std::vector<Vec<dim>> velocity;         // v^(n-1/2), v^0 before the first step, m/s
+  std::vector<Rot<dim>> angular_velocity; // omega^(n-1/2), omega^0 before the first step, rad/s
+  std::vector<Vec<dim>> velocity_before;  // the same half a step earlier than the last step, m/s
+  std::vector<Rot<dim>> angular_velocity_before; // rad/s
+
+  std::size_t size() const noexcept { return radius.size(); }
+  Vec<dim> position(std::size_t i) const { return reference[i] + displacement[i]; }
+};
+
+/// Particles at rest with weight one.
+/// @throws std::invalid_argument when there are none, the sizes differ, a coordinate is not
+///         finite, or a radius or the density is not positive
+template <int dim>
+Particles<dim> make_particles(std::span<const Vec<dim>> positions, std::span<const double> radii,
+                              double density);
+
+/// Scales masses and moments of inertia.
+/// @param weight  [n] share of each particle; empty: one everywhere
+/// @throws std::invalid_argument when the size is wrong or a weight is not positive and finite
+template <int dim> void blend(Particles<dim>& particles, std::span<const double> weight);
+
+} // namespace kerf::dem

@@ -1,0 +1,136 @@
+#include "dem_core/program/dem_participant.hpp"
+
+#include "coupler/participant/run_engine.hpp"
+#include "dem_core/engine.hpp"
+#include "dem_core/program/dem_output.hpp"
+#include "dem_core/program/read_settings.hpp"
+#include "dem_core/program/stopwatch.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+
+#include <numeric>
+
+namespace kerf::dem {
+
+namespace {
+
+using coupler::SettingsError;
+using nlohmann::json;
+
+/// Measures the two calls in which an engine works.
+template <int dim> class TimedEngine {
+public:
+  explicit TimedEngine(Engine<dim>& engine) : engine_(engine) {}
+
+  void motion(std::span<const std::uint32_t> points, std::span<double> position,
+              std::span<double> velocity) const {
+    engine_.motion(points, position, velocity);
+  }
+  void compute_own_forces() {
+    const Stopwatch stopwatch(force_seconds);
+    engine_.compute_own_forces();
+  }
+  void own_forces(std::span<const std::uint32_t> points, std::span<double> force) const {
+    engine_.own_forces(points, force);
+  }
+  void add_interface_forces(std::span<const std::uint32_t> points, std::span<const double> force) {
+    engine_.add_interface_forces(points, force);
+  }
+  void integrate() {
+    const Stopwatch stopwatch(integrate_seconds);
+    engine_.integrate();
+  }
+
+  double force_seconds = 0.0, integrate_seconds = 0.0;
+
+private:
+  Engine<dim>& engine_;
+};
+
+template <int dim> Engine<dim> make_engine(const json& table, const json& case_table) {
+  const Settings<dim> settings = read_settings<dim>(table, case_table);
+  try {
+    return Engine<dim>(settings);
+  } catch (const std::invalid_argument& error) {
+    throw SettingsError("particles", error.what());
+  }
+}
+
+template <int dim> coupler::Declaration declare(const Engine<dim>& engine) {
+  coupler::Declaration d;
+  d.dimension = dim;
+  d.ids.resize(engine.size());
+  std::iota(d.ids.begin(), d.ids.end(), 0);
+  const Particles<dim>& p = engine.particles();
+  for (std::size_t i = 0; i < engine.size(); ++i) {
+    d.positions.insert(d.positions.end(), p.reference[i].begin(), p.reference[i].end());
+    d.stiffness.push_back(engine.stiffness(i));
+  }
+  d.radii = p.radius;
+  d.memory_estimate = engine.memory();
+  return d;
+}
+
+template <int dim> coupler::Limits limits_of(const Engine<dim>& engine, const coupler::Plan& plan) {
+  coupler::Limits limits;
+  for (const coupler::Interface& interface : plan.interfaces) {
+    std::vector<double> inverse_mass(interface.points.size() * dim);
+    std::vector<double> omega2(interface.points.size());
+    engine.inverse_mass(interface.points, inverse_mass);
+    engine.omega2(interface.points, omega2);
+    limits.inverse_mass.push_back(std::move(inverse_mass));
+    limits.omega2.push_back(std::move(omega2));
+  }
+  const StepLimit own = engine.step_limit();
+  limits.largest_omega2 = own.omega2;
+  limits.limited_by = own.limited_by;
+  return limits;
+}
+
+template <int dim>
+int run(coupler::Participant& broker, const json& table, const json& case_table) {
+  Engine<dim> engine = make_engine<dim>(table, case_table);
+  const coupler::Plan& plan = broker.declare(declare(engine));
+  engine.set_weights(plan.weights);
+  const coupler::Schedule& schedule = broker.initialize(limits_of(engine, plan));
+
+  const coupler::Assignment& assignment = broker.assignment();
+  if (assignment.plan_only) {
+    broker.finalize();
+    return 0;
+  }
+  engine.start(schedule.time_step);
+  DemOutput<dim> output(engine, assignment.run_folder, assignment.name);
+  TimedEngine<dim> timed(engine);
+  coupler::run_engine(timed, broker, plan, schedule, output);
+
+  const json summary = {{"seconds",
+                         {{"forces", timed.force_seconds},
+                          {"integrate", timed.integrate_seconds},
+                          {"output", output.seconds()}}},
+                        {"threads", omp_get_max_threads()},
+                        {"particles", engine.size()},
+                        {"contacts", engine.contacts().size()},
+                        {"contact_list_renewals", engine.renewals()}};
+  broker.finalize(summary.dump());
+  return 0;
+}
+
+} // namespace
+
+int run_dem(coupler::Participant& broker) {
+  const json table = json::parse(broker.assignment().settings);
+  const json case_table = json::parse(broker.assignment().case_settings);
+  if (const auto threads = read_threads(table))
+    omp_set_num_threads(*threads);
+  const int dimension = case_table.value("dimension", 0);
+  if (dimension == 2)
+    return run<2>(broker, table, case_table);
+  if (dimension == 3)
+    return run<3>(broker, table, case_table);
+  throw SettingsError("", fmt::format("the dimension {} must be 2 or 3", dimension));
+}
+
+} // namespace kerf::dem

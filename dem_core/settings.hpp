@@ -1,0 +1,98 @@
+// What a particle model is made of: bodies, material, bonds, damping, boundaries, initial state.
+#pragma once
+
+#include "common/vec.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace kerf::dem {
+
+/// Constants of every contact; in 2D all of them are per metre of thickness.
+struct Material {
+  double density = 0.0;                                              // of the solid, kg/m³
+  double normal_stiffness = 0.0;                                     // k_n, N/m
+  double tangential_stiffness = 0.0;                                 // k_t, N/m
+  double tensile_strength = std::numeric_limits<double>::infinity(); // R_n, N
+  double shear_strength = std::numeric_limits<double>::infinity();   // R_t, N
+  double friction = 0.0;                                             // mu of broken contacts
+};
+
+/// Where the tangential displacement of a step is measured.
+enum class ShearIncrement {
+  midpoint, // on the branch halfway through the step: reversible, energy error falls as dt²
+  endpoint, // on the branch at its end, as YADE's ScGeom does: for comparison, first order in dt
+};
+
+enum class DampingKind {
+  nonviscous,    // Rojek (2008) eqs 18-19: against the direction of motion
+  componentwise, // as YADE's NewtonIntegrator: each component by the sign of its power
+};
+
+struct Damping {
+  DampingKind kind = DampingKind::nonviscous;
+  double translation = 0.0; // alpha_t, share of the resultant force
+  double rotation = 0.0;    // alpha_r, share of the resultant moment
+};
+
+/// Part of space whose particles are meant; the edges belong to it.
+template <int dim> struct Box {
+  Vec<dim> lower, upper; // m
+
+  /// True inside and up to 1e-9 of the longest edge outside.
+  bool contains(const Vec<dim>& point) const {
+    const double slack = 1e-9 * (upper - lower).maxCoeff();
+    return ((point - lower).array() >= -slack).all() && ((upper - point).array() >= -slack).all();
+  }
+};
+
+enum class Motion {
+  fixed,    // does not move
+  velocity, // constant velocity
+  hann,     // displacement amplitude * (1 - cos(2 pi t / duration)) / 2 until t = duration
+};
+
+/// Motion that some particles are given, whatever the forces. Where two of them meet in one
+/// component, the later one counts.
+template <int dim> struct Prescription {
+  Box<dim> box;                          // selects by the reference position
+  std::uint8_t components = 0;           // bit a: axis a; bit dim: every rotation, held at zero
+  Motion motion = Motion::fixed;         //
+  Vec<dim> velocity = Vec<dim>::Zero();  // of Motion::velocity, m/s
+  Vec<dim> amplitude = Vec<dim>::Zero(); // of Motion::hann, m
+  double duration = 0.0;                 // of Motion::hann, s
+};
+
+/// One-way displacement pulse amplitude * (1 + cos(2 pi z / length)) / 2, |z| < length / 2.
+struct Pulse {
+  double amplitude = 0.0;  // m
+  double center = 0.0;     // position of z = 0 on the axis, m
+  double length = 0.0;     // whole width, m
+  double wave_speed = 0.0; // of long waves, m/s; negative: towards the negative axis
+  double spacing = 0.0;    // of the lattice whose dispersion the velocities follow, m; 0: none
+  int component = 0;       // of the displacement
+  int axis = 0;            // along which it varies and travels
+};
+
+/// State at the start; several of them add up.
+template <int dim> struct InitialCondition {
+  std::optional<Box<dim>> box;          // nothing: all particles
+  Vec<dim> velocity = Vec<dim>::Zero(); // m/s
+  std::optional<Pulse> pulse;
+};
+
+template <int dim> struct Settings {
+  std::vector<Vec<dim>> positions; // [n] centres in the reference configuration, m
+  std::vector<double> radii;       // [n] m
+  Material material;
+  double gap_tolerance = 1e-3; // bonded when distance - (r_i + r_j) <= gap_tolerance (r_i + r_j)
+  ShearIncrement shear_increment = ShearIncrement::midpoint;
+  Damping damping;
+  std::vector<Prescription<dim>> boundary;
+  std::vector<InitialCondition<dim>> initial;
+  Period<dim> period;
+};
+
+} // namespace kerf::dem

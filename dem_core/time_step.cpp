@@ -1,0 +1,75 @@
+#include "dem_core/time_step.hpp"
+
+#include <algorithm>
+
+namespace kerf::dem {
+
+namespace {
+
+constexpr int dofs(int dim) {
+  return dim == 2 ? 3 : 6;
+}
+
+/// Translations u, then scaled rotations r theta.
+template <int dim> using Block = Eigen::Matrix<double, dofs(dim), dofs(dim)>;
+template <int dim> using Row = Eigen::Matrix<double, dofs(dim), 1>;
+/// What a motion of one particle does to the relative displacement at the point of contact.
+template <int dim> using Kinematics = Eigen::Matrix<double, dim, dofs(dim)>;
+
+/// Velocity of the rotation of `side` around the branch, per unit of r theta: -arm / r theta x n.
+template <int dim> Kinematics<dim> rolling(const Vec<dim>& n, double arm_over_radius) {
+  Kinematics<dim> k = Kinematics<dim>::Zero();
+  for (int a = 0; a < rotations<dim>; ++a)
+    k.col(dim + a) = -arm_over_radius * spin<dim>(Rot<dim>::Unit(a), n);
+  return k;
+}
+
+} // namespace
+
+template <int dim>
+double row_sum(const Contacts<dim>& c, const Particles<dim>& p, const Boundary<dim>& boundary,
+               std::size_t i) {
+  Block<dim> own = Block<dim>::Zero(); // summed before absolute values are taken
+  Row<dim> others = Row<dim>::Zero();
+  for (std::uint32_t e = c.offset[i]; e < c.offset[i + 1]; ++e) {
+    const std::uint32_t k = c.incidence[e] >> 1;
+    const bool is_second = (c.incidence[e] & 1u) != 0;
+    const Vec<dim> relative = p.displacement[c.second[k]] - p.displacement[c.first[k]];
+    const Vec<dim> branch = c.reference_branch[k] + relative;
+    const double length = branch.norm();
+    if (!c.carries(k, opening(c, k, relative, length)))
+      continue;
+
+    const Vec<dim> n = (is_second ? -1.0 : 1.0) / length * branch; // away from particle i
+    const double lever = length / (p.radius[c.first[k]] + p.radius[c.second[k]]);
+    const Eigen::Matrix<double, dim, dim> normal = n * n.transpose();
+    const Eigen::Matrix<double, dim, dim> stiffness =
+        c.weight[k] *
+        (c.normal_stiffness[k] * normal +
+         c.tangential_stiffness[k] * (Eigen::Matrix<double, dim, dim>::Identity() - normal));
+    Kinematics<dim> self = rolling<dim>(n, lever), other = self;
+    self.template leftCols<dim>() = -Eigen::Matrix<double, dim, dim>::Identity();
+    other.template leftCols<dim>().setIdentity();
+    own += self.transpose() * stiffness * self;
+    others += (self.transpose() * stiffness * other).cwiseAbs().rowwise().sum();
+  }
+
+  const Row<dim> sums = own.cwiseAbs().rowwise().sum() + others;
+  double largest = 0.0;
+  for (int a = 0; a < dim; ++a)
+    if (!boundary.prescribes(i, a))
+      largest = std::max(largest, sums[a] / p.mass[i]);
+  if (!boundary.holds_rotation(i)) {
+    const double rotary_mass = p.inertia[i] / (p.radius[i] * p.radius[i]); // kg
+    for (int a = dim; a < dofs(dim); ++a)
+      largest = std::max(largest, sums[a] / rotary_mass);
+  }
+  return largest;
+}
+
+template double row_sum<2>(const Contacts<2>&, const Particles<2>&, const Boundary<2>&,
+                           std::size_t);
+template double row_sum<3>(const Contacts<3>&, const Particles<3>&, const Boundary<3>&,
+                           std::size_t);
+
+} // namespace kerf::dem

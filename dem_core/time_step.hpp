@@ -1,0 +1,24 @@
+// The largest stable time step: a bound of the highest frequency that is never below it.
+#pragma once
+
+#include "dem_core/boundary.hpp"
+#include "dem_core/contact.hpp"
+#include "dem_core/particles.hpp"
+
+#include <cstddef>
+
+namespace kerf::dem {
+
+/// Largest Gershgorin row sum of M^-1 K of one particle, rad²/s², over its translations and
+/// rotations that are not prescribed. The largest of all particles bounds omega_max² from above,
+/// so that 2 / sqrt of it never exceeds the critical step of Rojek (2008) eq. 10.
+///
+/// K is the stiffness of the contacts that carry force, at their current normals, with the weights
+/// of contacts, masses and inertias. Rotations count as r theta with inertia I / r²: in radians
+/// the bound would depend on the unit of length.
+/// @see S. Gershgorin, Izv. Akad. Nauk SSSR, Otd. Mat. (1931) 749-754
+template <int dim>
+double row_sum(const Contacts<dim>& contacts, const Particles<dim>& particles,
+               const Boundary<dim>& boundary, std::size_t i);
+
+} // namespace kerf::dem

@@ -1,0 +1,103 @@
+#include "fem_core/program/fem_participant.hpp"
+
+#include "coupler/participant/run_engine.hpp"
+#include "fem_core/engine.hpp"
+#include "fem_core/input_error.hpp"
+#include "fem_core/program/output.hpp"
+#include "fem_core/program/read_settings.hpp"
+
+#include <omp.h>
+
+#include <chrono>
+#include <numeric>
+
+namespace kerf::fem {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <int dim> coupler::Declaration declare(const Mesh<dim>& mesh) {
+  constexpr double per_element = // gradients, volumes, forces, indices
+      gauss_points<dim> * (element_nodes<dim> * dim + 1) * sizeof(double) +
+      element_nodes<dim> * (dim * sizeof(double) + 3 * sizeof(std::uint32_t));
+  constexpr double per_node = 10 * dim * sizeof(double); // vectors of the state and of the mesh
+
+  coupler::Declaration declaration;
+  declaration.dimension = dim;
+  declaration.ids.resize(mesh.num_nodes());
+  std::iota(declaration.ids.begin(), declaration.ids.end(), 0);
+  declaration.positions = mesh.positions;
+  declaration.nodes_per_element = element_nodes<dim>;
+  declaration.elements = mesh.elements;
+  declaration.boundary = mesh.boundary;
+  declaration.memory_estimate = per_element * static_cast<double>(mesh.num_elements()) +
+                                per_node * static_cast<double>(mesh.num_nodes());
+  return declaration;
+}
+
+template <int dim> coupler::Limits limits(const Engine<dim>& engine, const coupler::Plan& plan) {
+  coupler::Limits limits;
+  for (const coupler::Interface& interface : plan.interfaces) {
+    engine.inverse_mass(interface.points,
+                        limits.inverse_mass.emplace_back(interface.points.size() * dim));
+    engine.omega2(interface.points, limits.omega2.emplace_back(interface.points.size()));
+  }
+  const StepLimit own = engine.step_limit();
+  limits.largest_omega2 = own.omega2;
+  limits.limited_by = own.limited_by;
+  return limits;
+}
+
+template <int dim>
+void run(coupler::Participant& participant, const Table& settings, const Table& case_settings) {
+  const auto begin = Clock::now();
+  const Mesh<dim> mesh = read_mesh(settings, read_period<dim>(case_settings));
+  Engine<dim> engine(mesh, read_settings(settings, mesh));
+  const coupler::Plan& plan = participant.declare(declare(mesh));
+  engine.set_weights(plan.weights);
+  const coupler::Schedule& schedule = participant.initialize(limits(engine, plan));
+  const coupler::Assignment& assignment = participant.assignment();
+  if (assignment.plan_only) {
+    participant.finalize();
+    return;
+  }
+  engine.start(schedule.time_step);
+  Output<dim> output(engine, plan.weights, assignment.run_folder, assignment.name);
+  const double setup = seconds_since(begin);
+  coupler::run_engine(engine, participant, plan, schedule, output);
+  const double total = seconds_since(begin);
+  const nlohmann::json timings = {
+      {"setup", setup}, {"steps", total - setup - output.seconds()}, {"output", output.seconds()}};
+  participant.finalize(nlohmann::json{{"seconds", timings}}.dump());
+}
+
+} // namespace
+
+int run_fem(coupler::Participant& participant) {
+  try {
+    const auto settings_json = nlohmann::json::parse(participant.assignment().settings);
+    const auto case_json = nlohmann::json::parse(participant.assignment().case_settings);
+    const Table settings(settings_json, "");
+    const Table case_settings(case_json, "");
+    if (const auto threads = read_threads(settings))
+      omp_set_num_threads(*threads);
+    const std::uint64_t dimension = case_settings.count("dimension");
+    if (dimension == 2)
+      run<2>(participant, settings, case_settings);
+    else if (dimension == 3)
+      run<3>(participant, settings, case_settings);
+    else
+      throw coupler::SettingsError("", fmt::format("the case has {} dimensions; kerf-fem can do 2 "
+                                                   "and 3",
+                                                   dimension));
+  } catch (const InputError& error) {
+    throw coupler::SettingsError(error.key(), error.what());
+  }
+  return 0;
+}
+
+} // namespace kerf::fem

@@ -1,0 +1,42 @@
+// The results of a finite element participant: frames of the mesh, history of the energies.
+#pragma once
+
+#include "common/history.hpp"
+#include "common/results.hpp"
+#include "fem_core/engine.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kerf::fem {
+
+/// What the loop of an engine calls when results are due. Both throw std::runtime_error, with the
+/// node and the time, when the motion is no longer a finite number.
+template <int dim> class Output {
+public:
+  /// @param alpha  [num_nodes] share of the elements in the blended virtual work; empty: one
+  Output(const Engine<dim>& engine, std::vector<double> alpha,
+         const std::filesystem::path& run_folder, const std::string& participant);
+
+  /// Writes the state x^n, v^(n-1/2).
+  void write_frame(std::uint64_t step, double time);
+  /// Writes the energies of t_n, after integrate().
+  void write_history(std::uint64_t step, double time);
+
+  double seconds() const { return seconds_; } // spent here so far
+
+private:
+  void check_finite(std::uint64_t step, double time) const;
+
+  const Engine<dim>& engine_;
+  std::vector<double> alpha_;
+  std::vector<std::int64_t> ids_;
+  FrameWriter frames_;
+  History history_;
+  double seconds_ = 0.0;
+};
+
+} // namespace kerf::fem

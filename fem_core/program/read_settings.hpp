@@ -1,0 +1,27 @@
+// Turns the settings that a participant is given into a mesh and the settings of the engine.
+#pragma once
+
+#include "fem_core/mesh.hpp"
+#include "fem_core/program/table.hpp"
+#include "fem_core/settings.hpp"
+
+#include <optional>
+
+namespace kerf::fem {
+
+/// The period of the case, from its table [case].
+template <int dim> Period<dim> read_period(const Table& case_settings);
+
+/// The mesh of a participant.
+/// @throws coupler::SettingsError
+template <int dim> Mesh<dim> read_mesh(const Table& participant, const Period<dim>& period);
+
+/// Everything besides the mesh, whose tags the boundaries must know.
+/// @throws coupler::SettingsError
+template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh);
+
+/// Threads that the engine may use; nothing for "auto".
+/// @throws coupler::SettingsError
+std::optional<int> read_threads(const Table& participant);
+
+} // namespace kerf::fem

@@ -1,0 +1,74 @@
+// What can be set of a finite element body besides its mesh.
+#pragma once
+
+#include "common/vec.hpp"
+#include "fem_core/materials.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kerf::fem {
+
+/// A region of the reference configuration, faces included with a slack of 1e-9 of its size.
+template <int dim> struct Box {
+  Vec<dim> lower, upper; // m
+
+  bool contains(const Vec<dim>& point) const {
+    const double slack = 1e-9 * (upper - lower).maxCoeff();
+    return ((point - lower).array() >= -slack).all() && ((upper - point).array() >= -slack).all();
+  }
+};
+
+/// How a prescribed displacement goes on in time; t = 0 is the start of the run.
+enum class Motion {
+  fixed,    // 0
+  velocity, // velocity * t
+  hann,     // amplitude (1 - cos(2 pi t / duration)) / 2 for 0 <= t <= duration, else 0
+};
+
+/// Motion that is prescribed for some nodes, selected either by a tag or by a box.
+template <int dim> struct BoundarySetting {
+  std::string tag; // empty: by the box
+  std::optional<Box<dim>> box;
+  std::array<bool, dim> components;
+  Motion motion = Motion::fixed;
+  Vec<dim> velocity = Vec<dim>::Zero();  // m/s
+  Vec<dim> amplitude = Vec<dim>::Zero(); // m
+  double duration = 0.0;                 // s
+};
+
+/// Velocity that the nodes start with.
+template <int dim> struct InitialVelocity {
+  Vec<dim> velocity = Vec<dim>::Zero(); // m/s
+};
+
+/// Displacement pulse that starts already on its way along an axis:
+/// u(z) = amplitude (1 + cos(2 pi z / length)) / 2 for |z| < length / 2, z = x - center.
+struct InitialPulse {
+  double amplitude = 0.0;  // m
+  double center = 0.0;     // m
+  double length = 0.0;     // m, > 0
+  double wave_speed = 0.0; // m/s; negative: it travels towards lower coordinates
+  /// Element size along the axis, m: the velocity is then the one with which lumped linear
+  /// elements of this size carry the pulse on. 0: that of the continuum.
+  double spacing = 0.0;
+  int component = 0; // of the displacement
+  int axis = 0;
+};
+
+/// Initial conditions add up.
+template <int dim> struct InitialSetting {
+  std::optional<Box<dim>> box; // none: everywhere
+  std::optional<InitialVelocity<dim>> velocity;
+  std::optional<InitialPulse> pulse;
+};
+
+template <int dim> struct Settings {
+  LinearElastic material;
+  std::vector<BoundarySetting<dim>> boundary;
+  std::vector<InitialSetting<dim>> initial;
+};
+
+} // namespace kerf::fem

@@ -1,0 +1,103 @@
+// Finite element bodies that several tests use.
+#pragma once
+
+#include "fem_core/engine.hpp"
+#include "fem_core/internal_force.hpp"
+#include "fem_core/mass.hpp"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <vector>
+
+namespace kerf::cases {
+
+/// A rock of round numbers: E = 10 GPa, nu = 0.25, so lambda = mu = 4 GPa.
+inline const fem::LinearElastic rock = fem::from_young(2500.0, 10e9, 0.25);
+
+/// Moves the nodes inside a box by up to `share` of the element size along each axis; the outline
+/// stays what it was.
+template <int dim> void distort(fem::Mesh<dim>& mesh, const fem::BoxMesh<dim>& box, double share) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-share, share);
+  for (std::size_t a = 0; a < mesh.num_nodes(); ++a) {
+    const Vec<dim> from_lower = mesh.position(a) - box.origin;
+    const Vec<dim> from_upper = box.size - from_lower;
+    if (from_lower.minCoeff() < 1e-9 || from_upper.minCoeff() < 1e-9)
+      continue;
+    for (int i = 0; i < dim; ++i)
+      mesh.positions[a * dim + i] += any(random) * box.size[i] / static_cast<double>(box.count[i]);
+  }
+}
+
+/// Some box of a few elements, distorted by a quarter of their size.
+template <int dim> fem::Mesh<dim> distorted_box() {
+  fem::BoxMesh<dim> box;
+  box.size = Vec<dim>::LinSpaced(dim, 3.0, 5.0) * 1e-3;
+  box.count.fill(dim == 2 ? 4 : 3);
+  fem::Mesh<dim> mesh = fem::make_box(box);
+  distort(mesh, box, 0.25);
+  return mesh;
+}
+
+/// alpha that rises linearly from zero at x = begin to one at x = begin + width.
+template <int dim>
+std::vector<double> ramp(const fem::Mesh<dim>& mesh, double begin, double width) {
+  std::vector<double> alpha;
+  for (std::size_t a = 0; a < mesh.num_nodes(); ++a)
+    alpha.push_back(std::clamp((mesh.position(a)[0] - begin) / width, 0.0, 1.0));
+  return alpha;
+}
+
+/// -F^int of all nodes for a displacement field.
+template <int dim>
+std::vector<double> forces(const fem::Elements<dim>& elements, const fem::LinearElastic& material,
+                           std::span<const double> displacement) {
+  std::vector<double> of_elements(elements.size() * fem::element_nodes<dim> * dim);
+  std::vector<double> of_nodes(displacement.size());
+  fem::compute_element_forces<dim>(elements, material, displacement, of_elements);
+  fem::gather_element_forces<dim>(elements, of_elements, of_nodes);
+  return of_nodes;
+}
+
+/// The stiffness matrix of all nodes, column by column from the forces of unit displacements.
+template <int dim>
+Eigen::MatrixXd stiffness(const fem::Elements<dim>& elements, const fem::LinearElastic& material) {
+  const auto size = static_cast<Eigen::Index>(elements.num_nodes()) * dim;
+  Eigen::MatrixXd K(size, size);
+  std::vector<double> u(static_cast<std::size_t>(size), 0.0);
+  for (Eigen::Index j = 0; j < size; ++j) {
+    u[static_cast<std::size_t>(j)] = 1.0;
+    const std::vector<double> f = forces<dim>(elements, material, u);
+    K.col(j) = -Eigen::Map<const Eigen::VectorXd>(f.data(), size);
+    u[static_cast<std::size_t>(j)] = 0.0;
+  }
+  return K;
+}
+
+/// Largest eigenvalue of the assembled M^-1 K, rad²/s²; nodes without mass do not count.
+template <int dim>
+double largest_omega2(const fem::Elements<dim>& elements, const fem::LinearElastic& material) {
+  const std::vector<double> mass = fem::lumped_mass(elements, material.density);
+  const Eigen::MatrixXd K = stiffness(elements, material);
+  Eigen::VectorXd scale(K.rows());
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    const double m = mass[static_cast<std::size_t>(i / dim)];
+    scale[i] = m > 0.0 ? 1.0 / std::sqrt(m) : 0.0;
+  }
+  const Eigen::MatrixXd A = scale.asDiagonal() * K * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .maxCoeff();
+}
+
+/// One step without other participants.
+template <int dim> void step(fem::Engine<dim>& engine) {
+  engine.compute_own_forces();
+  engine.integrate();
+}
+
+} // namespace kerf::cases

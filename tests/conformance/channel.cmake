@@ -1,0 +1,13 @@
+# channel_tests - transports, messages and the participant library, without solvers or a broker.
+add_executable(channel_tests
+  ${PROJECT_SOURCE_DIR}/tests/conformance/channel_suite.cpp
+  ${PROJECT_SOURCE_DIR}/tests/conformance/shared_memory.cpp
+  ${PROJECT_SOURCE_DIR}/tests/unit/protocol_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/tests/unit/protocol_frames.cpp
+  ${PROJECT_SOURCE_DIR}/tests/unit/protocol_wire.cpp
+  ${PROJECT_SOURCE_DIR}/tests/unit/participant_faults.cpp
+  ${PROJECT_SOURCE_DIR}/tests/unit/participant_steps.cpp)
+target_link_libraries(channel_tests PRIVATE kerf::participant cppzmq fmt::fmt
+                                            nlohmann_json::nlohmann_json GTest::gtest_main
+                                            Threads::Threads kerf::warnings)
+gtest_discover_tests(channel_tests PROPERTIES TIMEOUT 120)

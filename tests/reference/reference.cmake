@@ -1,0 +1,5 @@
+# kerf against YADE and FEniCSx.
+kerf_python_test(reference.yade reference/wave.py
+                 Wave.test_a_wave_in_a_bonded_lattice_is_that_of_yade reference)
+kerf_python_test(reference.fenicsx reference/wave.py
+                 Wave.test_a_pulse_in_a_bar_of_quadrilaterals_is_that_of_fenicsx reference)

@@ -1,0 +1,135 @@
+// The face of the engine: interface forces, own forces, threads, what is lost.
+#include "tests/cases/dem_models.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cstring>
+
+namespace kerf {
+namespace {
+
+using cases::rock;
+using cases::spacing;
+
+// (own + interface) * inverse mass is the acceleration; v^(1/2) = v^0 + a dt / 2 in the first step.
+TEST(Engine, integrates_own_and_interface_forces) {
+  auto settings = cases::irregular_model<3>(3, rock(3, 0.5), 2);
+  cases::shake(settings, 1e-3, 3);
+  settings.damping = {.kind = dem::DampingKind::nonviscous, .translation = 0.2, .rotation = 0.1};
+  dem::Engine<3> engine(settings);
+  const double dt = 1e-8;
+  engine.start(dt);
+  const std::vector<std::uint32_t> points = {2, 5, 11};
+  std::vector<double> inverse(9), own(9), x(9), v(9), x_after(9), v_after(9);
+  const std::vector<double> force = {1.0, -2.0, 3.0, 0.5, 0.0, 0.0, 0.0, -7.0, 1.0};
+  engine.inverse_mass(points, inverse);
+  for (int n = 0; n < 5; ++n) {
+    engine.motion(points, x, v);
+    engine.compute_own_forces();
+    engine.compute_own_forces(); // changes nothing
+    engine.own_forces(points, own);
+    engine.add_interface_forces(points, force);
+    engine.integrate();
+    engine.motion(points, x_after, v_after);
+    for (std::size_t k = 0; k < 9; ++k) {
+      const double a = (own[k] + force[k]) * inverse[k];
+      const double expected = v[k] + (n == 0 ? 0.5 : 1.0) * a * dt;
+      EXPECT_NEAR(v_after[k], expected, 1e-13 * std::abs(expected));
+      EXPECT_NEAR(x_after[k], x[k] + expected * dt, 1e-18);
+    }
+  }
+}
+
+// Work of a constant force on a free particle: F (x - x_0) between t_0 and t_n, and no other energy
+// than the kinetic one. Tolerance: rounding.
+TEST(Engine, books_the_work_of_interface_forces) {
+  dem::Settings<2> settings;
+  settings.positions = {{0.0, 0.0}};
+  settings.radii = {0.5 * spacing};
+  settings.material = rock(2);
+  dem::Engine<2> engine(settings);
+  engine.start(1e-6);
+  const std::uint32_t points[] = {0};
+  const double half[] = {1.0, 0.5};
+  for (int n = 0; n <= 10; ++n) {
+    const Vec<2> u = engine.particles().displacement[0];
+    engine.compute_own_forces();
+    engine.add_interface_forces(points, half); // two couplings may meet in one particle
+    engine.add_interface_forces(points, half);
+    engine.integrate();
+    const auto e = engine.energies();
+    EXPECT_NEAR(e.interface_work, 2.0 * u[0] + 1.0 * u[1], 1e-13 * (1e-30 + e.interface_work));
+    EXPECT_NEAR(e.kinetic, e.interface_work, 1e-13 * e.kinetic + 1e-25);
+  }
+}
+
+/// All numbers that a run leaves behind.
+std::vector<double> run_with(int threads) {
+  omp_set_num_threads(threads);
+  auto settings = cases::irregular_model<2>(45, rock(2, 0.5), 9);
+  settings.material.friction = 0.4;
+  settings.material.tensile_strength = 4e3;
+  settings.material.shear_strength = 4e3;
+  settings.damping.translation = 0.1;
+  cases::shake(settings, 5.0, 3);
+  dem::Engine<2> engine(settings);
+  engine.start(0.5 * 2.0 / std::sqrt(engine.step_limit().omega2));
+  for (int n = 0; n < 400; ++n)
+    cases::step(engine);
+  EXPECT_LT(engine.bonds(), engine.bonds_at_start());
+  EXPECT_GT(engine.renewals(), 0u);
+  const auto e = engine.energies();
+  std::vector<double> numbers = {e.kinetic, e.elastic, e.damping_dissipation,
+                                 e.friction_dissipation, e.fracture_dissipation};
+  for (std::size_t i = 0; i < engine.size(); ++i) {
+    const auto& p = engine.particles();
+    numbers.insert(numbers.end(), {p.displacement[i][0], p.displacement[i][1], p.velocity[i][0],
+                                   p.velocity[i][1], p.angular_velocity[i][0]});
+  }
+  return numbers;
+}
+
+TEST(Engine, gives_the_same_bits_with_one_and_with_two_threads) {
+  const int threads = omp_get_max_threads();
+  const auto one = run_with(1), two = run_with(2), three = run_with(3);
+  omp_set_num_threads(threads);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(double)), 0);
+  EXPECT_EQ(std::memcmp(one.data(), three.data(), one.size() * sizeof(double)), 0);
+}
+
+TEST(Engine, survives_a_number_that_is_lost_and_says_where) {
+  auto settings = cases::lattice_model<2>(dem::LatticeType::triangular, {6, 6}, rock(2));
+  dem::Engine<2> engine(settings);
+  engine.start(1e-7);
+  const std::uint32_t points[] = {8};
+  const double force[] = {std::nan(""), 0.0};
+  EXPECT_EQ(engine.first_not_finite(), std::nullopt);
+  engine.compute_own_forces();
+  engine.add_interface_forces(points, force);
+  engine.integrate();
+  EXPECT_EQ(engine.first_not_finite(), 8u);
+  for (int n = 0; n < 50; ++n)
+    cases::step(engine);
+}
+
+TEST(Engine, blown_up_by_a_step_far_too_large_ends) {
+  auto settings = cases::lattice_model<2>(dem::LatticeType::triangular, {6, 6}, rock(2));
+  cases::shake(settings, 1.0, 2);
+  dem::Engine<2> engine(settings);
+  engine.start(100.0 / std::sqrt(engine.step_limit().omega2));
+  for (int n = 0; n < 500; ++n)
+    cases::step(engine);
+  EXPECT_NE(engine.first_not_finite(), std::nullopt);
+}
+
+TEST(Engine, refuses_weights_that_leave_a_particle_without_mass) {
+  dem::Engine<2> engine(cases::pair_model<2>({1.0, 0.0}, rock(2)));
+  const double zero[] = {1.0, 0.0}, one[] = {1.0};
+  EXPECT_THROW(engine.set_weights(zero), std::invalid_argument);
+  EXPECT_THROW(engine.set_weights(one), std::invalid_argument);
+}
+
+} // namespace
+} // namespace kerf

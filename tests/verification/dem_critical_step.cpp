@@ -1,0 +1,137 @@
+// The row sum against the true limit 2 / omega_max, from the eigenvalues of the assembled system.
+#include "tests/cases/dem_models.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kerf {
+namespace {
+
+using cases::rock;
+using dem::LatticeType;
+
+constexpr double ratios[] = {0.0, 0.2, 0.82, 1.0}; // k_t / k_n
+
+/// Time step from the row sum over the true limit, Rojek (2008) eq. 10.
+template <int dim> double share_of_limit(const dem::Engine<dim>& engine) {
+  return std::sqrt(cases::largest_eigenvalue(engine) / engine.step_limit().omega2);
+}
+
+/// Never above the limit. Tolerance: the matrix comes from central differences of forces with
+/// moves of 1e-6, whose error of third order is 1e-12 and whose rounding is 1e-10.
+template <int dim> void never_above(const dem::Engine<dim>& engine, const std::string& what) {
+  const double share = share_of_limit(engine);
+  std::printf("%-32s %.3f\n", what.c_str(), share);
+  EXPECT_LE(share, 1.0 + 1e-9) << what;
+  EXPECT_GT(share, 0.6) << what << ": safe, but useless";
+}
+
+TEST(CriticalStep, of_a_pair_is_never_overestimated_in_any_direction) {
+  for (const double ratio : ratios)
+    for (int k = 0; k < 12; ++k) {
+      const double angle = k * std::numbers::pi / 12.0;
+      never_above(
+          dem::Engine<2>(cases::pair_model<2>({std::cos(angle), std::sin(angle)}, rock(2, ratio))),
+          "pair 2D, angle " + std::to_string(k) + " pi/12");
+      never_above(dem::Engine<3>(cases::pair_model<3>({std::cos(angle), std::sin(angle), 0.3 * k},
+                                                      rock(3, ratio))),
+                  "pair 3D, direction " + std::to_string(k));
+    }
+}
+
+// Reference: for k_t / k_n = 0.82 the limit of a pair of discs is 6 k_t / m (sliding), its row sum
+// 8 k_t / m: sqrt(6 / 8) = 0.866 of the limit. Spheres: 7 k_t / m and 10 k_t / m, 0.837.
+TEST(CriticalStep, of_a_pair_of_discs_along_an_axis_is_at_least_85_percent_of_the_limit) {
+  const dem::Engine<2> engine(cases::pair_model<2>({1.0, 0.0}, rock(2, 0.82)));
+  EXPECT_NEAR(share_of_limit(engine), std::sqrt(0.75), 1e-6);
+  EXPECT_GE(share_of_limit(engine), 0.85);
+}
+
+// The estimate from the normal frequency of pairs, sqrt(2 k_n / m), is the one after eq. 10; in a
+// long chain the true limit is sqrt(4 k_n / m): it would be 1.41 times too large.
+TEST(CriticalStep, of_a_chain_is_exact_without_shear) {
+  const dem::Engine<2> engine(cases::lattice_model<2>(LatticeType::chain, {60, 1}, rock(2, 0.0)));
+  // The largest frequency of a free chain of n is sqrt(4 k / m) cos(pi / (2 n)).
+  EXPECT_NEAR(share_of_limit(engine), std::cos(std::numbers::pi / 120.0), 1e-6);
+}
+
+TEST(CriticalStep, of_lattices_is_never_overestimated) {
+  for (const double ratio : ratios) {
+    never_above(
+        dem::Engine<2>(cases::lattice_model<2>(LatticeType::chain, {20, 1}, rock(2, ratio))),
+        "chain 2D");
+    never_above(
+        dem::Engine<3>(cases::lattice_model<3>(LatticeType::chain, {12, 1, 1}, rock(3, ratio))),
+        "chain 3D");
+    never_above(
+        dem::Engine<2>(cases::lattice_model<2>(LatticeType::triangular, {9, 9}, rock(2, ratio))),
+        "triangular lattice");
+    never_above(
+        dem::Engine<2>(cases::lattice_model<2>(LatticeType::square, {8, 8}, rock(2, ratio))),
+        "square lattice");
+    never_above(
+        dem::Engine<3>(cases::lattice_model<3>(LatticeType::fcc, {3, 3, 2}, rock(3, ratio))),
+        "FCC");
+    never_above(
+        dem::Engine<3>(cases::lattice_model<3>(LatticeType::cubic, {4, 4, 3}, rock(3, ratio))),
+        "cubic lattice");
+  }
+}
+
+TEST(CriticalStep, of_irregular_packings_is_never_overestimated) {
+  for (const double ratio : ratios)
+    for (const unsigned seed : {1u, 2u}) {
+      never_above(dem::Engine<2>(cases::irregular_model<2>(8, rock(2, ratio), seed)),
+                  "irregular 2D, seed " + std::to_string(seed));
+      never_above(dem::Engine<3>(cases::irregular_model<3>(4, rock(3, ratio), seed)),
+                  "irregular 3D, seed " + std::to_string(seed));
+    }
+}
+
+// Blended as in an overlap: weights fall from 1 to 0.05, masses at centres, contacts between.
+TEST(CriticalStep, of_a_blended_packing_is_never_overestimated) {
+  for (const double ratio : ratios) {
+    const auto settings = cases::irregular_model<2>(8, rock(2, ratio), 3);
+    dem::Engine<2> engine(settings);
+    std::vector<double> weight;
+    for (const Vec<2>& x : settings.positions)
+      weight.push_back(std::clamp(1.0 - x[0] / (6.0 * cases::spacing), 0.05, 1.0));
+    engine.set_weights(weight);
+    never_above(engine, "blended irregular 2D");
+  }
+}
+
+// A prescribed component has no row; what is left is a principal part of the whole matrix, whose
+// eigenvalues lie within those of the whole.
+TEST(CriticalStep, leaves_out_what_is_prescribed) {
+  auto settings = cases::pair_model<2>({1.0, 0.0}, rock(2, 0.0));
+  settings.positions.push_back({3.0 * cases::spacing, 0.0}); // alone
+  settings.radii.push_back(0.5 * cases::spacing);
+  settings.boundary = {cases::prescribe_at<2>(settings.positions[0], dem::Motion::fixed),
+                       cases::prescribe_at<2>(settings.positions[1], dem::Motion::fixed)};
+  const dem::Engine<2> engine(settings);
+  EXPECT_EQ(engine.step_limit().omega2, 0.0);
+}
+
+// Reference: dense eigenvalues. 0.99 of 2 / omega_max keeps a free lattice bounded, 1.01 does not.
+// Tolerance: at 0.99 the highest mode swells by 1 / sqrt(1 - 0.99²) = 7 at most; at 1.01 it grows
+// by 1.33 a step from rounding or from its share of the start, 1e3 within 100 steps.
+TEST(CriticalStep, from_the_eigenvalues_separates_stable_from_unstable) {
+  for (const double factor : {0.99, 1.01}) {
+    auto settings = cases::lattice_model<2>(LatticeType::triangular, {6, 6}, rock(2, 0.82));
+    cases::shake(settings, 1e-6, 4);
+    dem::Engine<2> engine(settings);
+    engine.start(factor * 2.0 / std::sqrt(cases::largest_eigenvalue(engine)));
+    cases::step(engine);
+    const double start = engine.energies().kinetic;
+    for (int n = 0; n < (factor < 1.0 ? 5000 : 100); ++n)
+      cases::step(engine);
+    const double end = engine.energies().elastic / start;
+    if (factor < 1.0)
+      EXPECT_LT(end, 50.0);
+    else
+      EXPECT_GT(end, 1e6);
+  }
+}
+
+} // namespace
+} // namespace kerf
