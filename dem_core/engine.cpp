@@ -46,9 +46,9 @@ void check(const Material& material) {
 template <int dim>
 Engine<dim>::Engine(const Settings<dim>& settings)
     : material_(settings.material), damping_(settings.damping),
-      shear_increment_(settings.shear_increment), period_(settings.period),
-      particles_(
-          make_particles<dim>(settings.positions, settings.radii, settings.material.density)),
+      shear_increment_(settings.shear_increment), initial_(settings.initial),
+      period_(settings.period), particles_(make_particles<dim>(settings.positions, settings.radii,
+                                                               settings.material.density)),
       boundary_(settings.boundary, particles_.reference),
       start_rotation_(particles_.size(), Rot<dim>::Zero()), is_touched_(particles_.size(), 0) {
   check(material_);
@@ -56,7 +56,7 @@ Engine<dim>::Engine(const Settings<dim>& settings)
   contacts_ = make_contacts(particles_, material_, settings.gap_tolerance, width, period_);
   skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
   bonds_at_start_ = contacts_.bonds();
-  start_rotation_ = apply_initial_conditions<dim>(settings.initial, particles_);
+  start_rotation_ = apply_initial_displacements<dim>(initial_, particles_);
   loads_.force.assign(size(), Vec<dim>::Zero());
   loads_.moment.assign(size(), Rot<dim>::Zero());
   loads_.interface_force.assign(size(), Vec<dim>::Zero());
@@ -117,7 +117,7 @@ template <int dim> void Engine<dim>::start(double time_step) {
   if (!(time_step > 0.0) || !std::isfinite(time_step))
     throw std::invalid_argument(fmt::format("time step {} s must be positive", time_step));
   time_step_ = time_step;
-  step_ = 0;
+  apply_initial_velocities<dim>(initial_, time_step, particles_);
   boundary_.advance(0, time_step);
 }
 
@@ -193,7 +193,8 @@ template <int dim> void Engine<dim>::integrate() {
 template <int dim> void Engine<dim>::book_step() {
   const StepWork step = step_work(particles_, loads_, boundary_, touched_, time_step_);
   work_ = work_ahead_;
-  work_ += step.before;
+  if (step_ > 0) // what was before t_0 is no work of this run
+    work_ += step.before;
   work_ahead_ = work_;
   work_ahead_ += step.after;
 }

@@ -59,6 +59,7 @@ public:
   /// Own row sum of M^-1 K of each point, rad²/s²; [points]. See row_sum().
   void omega2(std::span<const std::uint32_t> points, std::span<double> out) const;
 
+  /// Sets the initial velocities; once.
   /// @param time_step  s, > 0; it is not compared with step_limit() here
   void start(double time_step);
 
@@ -85,6 +86,7 @@ private:
   Material material_;
   Damping damping_;
   ShearIncrement shear_increment_;
+  std::vector<InitialCondition<dim>> initial_;
   Period<dim> period_;
   Particles<dim> particles_;
   Boundary<dim> boundary_;

@@ -38,40 +38,68 @@ double rate(const Pulse& pulse, double z, Function f, Slope f_slope) {
   return -pulse.wave_speed * (f(pulse, z + 0.5 * s) - f(pulse, z - 0.5 * s)) / s;
 }
 
+/// The mean of the rates half a step before and after t = 0.
+template <class Function, class Slope>
+double central_rate(const Pulse& pulse, double z, double dt, Function f, Slope f_slope) {
+  const double half = 0.5 * pulse.wave_speed * dt; // m
+  return 0.5 * (rate(pulse, z - half, f, f_slope) + rate(pulse, z + half, f, f_slope));
+}
+
 /// Half the curl of a displacement along `component` that grows by one per metre of `axis`.
 template <int dim> Rot<dim> mean_rotation(int axis, int component) {
   const Vec<dim> along = Vec<dim>::Unit(axis), moved = Vec<dim>::Unit(component);
   return 0.5 * moment<dim>(along, moved);
 }
 
+/// Calls use(condition, i) for every particle that a condition holds for.
+template <int dim, class Use>
+void for_each_selected(std::span<const InitialCondition<dim>> conditions,
+                       const Particles<dim>& particles, Use use) {
+  for (const InitialCondition<dim>& condition : conditions)
+    for (std::size_t i = 0; i < particles.size(); ++i)
+      if (!condition.box || condition.box->contains(particles.reference[i]))
+        use(condition, i);
+}
+
 } // namespace
 
 template <int dim>
-std::vector<Rot<dim>> apply_initial_conditions(std::span<const InitialCondition<dim>> conditions,
-                                               Particles<dim>& particles) {
+std::vector<Rot<dim>> apply_initial_displacements(std::span<const InitialCondition<dim>> conditions,
+                                                  Particles<dim>& particles) {
   std::vector<Rot<dim>> rotation(particles.size(), Rot<dim>::Zero());
-  for (const InitialCondition<dim>& condition : conditions)
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-      const Vec<dim>& x = particles.reference[i];
-      if (condition.box && !condition.box->contains(x))
-        continue;
-      particles.velocity[i] += condition.velocity;
-      if (!condition.pulse)
-        continue;
-      const Pulse& pulse = *condition.pulse;
-      const double z = x[pulse.axis] - pulse.center;
-      particles.displacement[i][pulse.component] += displacement(pulse, z);
-      particles.velocity[i][pulse.component] += rate(pulse, z, displacement, slope);
-      const Rot<dim> turn = mean_rotation<dim>(pulse.axis, pulse.component);
-      rotation[i] += slope(pulse, z) * turn;
-      particles.angular_velocity[i] += rate(pulse, z, slope, curvature) * turn;
-    }
+  for_each_selected<dim>(conditions, particles, [&](const auto& condition, std::size_t i) {
+    if (!condition.pulse)
+      return;
+    const Pulse& pulse = *condition.pulse;
+    const double z = particles.reference[i][pulse.axis] - pulse.center;
+    particles.displacement[i][pulse.component] += displacement(pulse, z);
+    rotation[i] += slope(pulse, z) * mean_rotation<dim>(pulse.axis, pulse.component);
+  });
   return rotation;
 }
 
-template std::vector<Rot<2>> apply_initial_conditions<2>(std::span<const InitialCondition<2>>,
-                                                         Particles<2>&);
-template std::vector<Rot<3>> apply_initial_conditions<3>(std::span<const InitialCondition<3>>,
-                                                         Particles<3>&);
+template <int dim>
+void apply_initial_velocities(std::span<const InitialCondition<dim>> conditions, double time_step,
+                              Particles<dim>& particles) {
+  for_each_selected<dim>(conditions, particles, [&](const auto& condition, std::size_t i) {
+    particles.velocity[i] += condition.velocity;
+    if (!condition.pulse)
+      return;
+    const Pulse& pulse = *condition.pulse;
+    const double z = particles.reference[i][pulse.axis] - pulse.center;
+    particles.velocity[i][pulse.component] +=
+        central_rate(pulse, z, time_step, displacement, slope);
+    particles.angular_velocity[i] += central_rate(pulse, z, time_step, slope, curvature) *
+                                     mean_rotation<dim>(pulse.axis, pulse.component);
+  });
+}
+
+#define KERF_INSTANTIATE(dim)                                                                      \
+  template std::vector<Rot<dim>> apply_initial_displacements<dim>(                                 \
+      std::span<const InitialCondition<dim>>, Particles<dim>&);                                    \
+  template void apply_initial_velocities<dim>(std::span<const InitialCondition<dim>>, double,      \
+                                              Particles<dim>&);
+KERF_INSTANTIATE(2)
+KERF_INSTANTIATE(3)
 
 } // namespace kerf::dem

@@ -52,13 +52,15 @@ public:
         in_capacity_(end == End::broker ? address.up_capacity : address.down_capacity),
         out_(out_capacity_), in_(in_capacity_) {
     socket_.set(zmq::sockopt::linger, 100); // ms; the last frame may still be under way
-    socket_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(in_capacity_ + sizeof(Prefix)));
+    // The limit also holds for ZeroMQ's own handshake, which has a few hundred bytes.
+    const std::size_t largest_message = sizeof(Prefix) + std::max<std::size_t>(in_capacity_, 4096);
+    socket_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(largest_message));
     if (end == End::broker) {
       bind(address);
     } else {
       connect(address);
       peer_is_there_ = true; // as good as: what is sent before the broker listens waits for it
-      tell_taken(); // without it the broker's end does not know that somebody is there
+      tell_taken();          // without it the broker's end does not know that somebody is there
     }
   }
 

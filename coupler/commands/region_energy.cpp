@@ -119,12 +119,14 @@ double particle_energy(const Frame& frame, const Frame* reference, const Box& bo
                 squared_difference(frame.at(field), i, other.at(field), match[i], reference);
   }
 
-  const auto pair_of = [](const Frame& f, std::size_t c) {
+  using Pair = std::pair<std::size_t, std::size_t>;
+  const auto ordered = [](std::size_t i, std::size_t j) { return Pair(std::minmax(i, j)); };
+  const auto pair_of = [&](const Frame& f, std::size_t c) {
     const std::vector<std::int64_t>& cells = f.at("contacts/cells").integers();
-    return std::minmax(static_cast<std::size_t>(cells[2 * c]),
-                       static_cast<std::size_t>(cells[2 * c + 1]));
+    return ordered(static_cast<std::size_t>(cells[2 * c]),
+                   static_cast<std::size_t>(cells[2 * c + 1]));
   };
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> other_contact;
+  std::map<Pair, std::size_t> other_contact;
   if (reference)
     for (std::size_t c = 0; c < other.at("contacts/cells").rows; ++c)
       other_contact.emplace(pair_of(other, c), c);
@@ -141,7 +143,7 @@ double particle_energy(const Frame& frame, const Frame* reference, const Box& bo
     std::size_t partner = 0;
     bool have = false;
     if (reference) {
-      const auto found = other_contact.find(std::minmax(match[i], match[j]));
+      const auto found = other_contact.find(ordered(match[i], match[j]));
       have = found != other_contact.end();
       partner = have ? found->second : 0;
     }

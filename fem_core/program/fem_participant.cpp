@@ -70,9 +70,14 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
   const double setup = seconds_since(begin);
   coupler::run_engine(engine, participant, plan, schedule, output);
   const double total = seconds_since(begin);
-  const nlohmann::json timings = {
-      {"setup", setup}, {"steps", total - setup - output.seconds()}, {"output", output.seconds()}};
-  participant.finalize(nlohmann::json{{"seconds", timings}}.dump());
+  const nlohmann::json summary = {{"seconds",
+                                   {{"setup", setup},
+                                    {"steps", total - setup - output.seconds()},
+                                    {"output", output.seconds()}}},
+                                  {"threads", omp_get_max_threads()},
+                                  {"nodes", mesh.num_nodes()},
+                                  {"elements", engine.elements().size()}};
+  participant.finalize(summary.dump());
 }
 
 } // namespace

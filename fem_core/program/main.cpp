@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   }
   try {
     auto participant = kerf::coupler::Participant::join(program);
-    kerf::start_log({.name = participant.assignment().name});
+    kerf::start_log({.name = participant.assignment().name, .file = {}, .to_stderr = true});
     return run(participant);
   } catch (const std::exception& error) {
     fmt::print(stderr, "kerf-fem: {}\n", error.what());

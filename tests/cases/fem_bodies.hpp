@@ -7,10 +7,13 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace kerf::cases {
@@ -41,6 +44,22 @@ template <int dim> fem::Mesh<dim> distorted_box() {
   fem::Mesh<dim> mesh = fem::make_box(box);
   distort(mesh, box, 0.25);
   return mesh;
+}
+
+/// Nodes with a tag that do not move in some components.
+template <int dim>
+fem::BoundarySetting<dim> held(const std::string& tag, const std::array<bool, dim>& components) {
+  fem::BoundarySetting<dim> setting;
+  setting.tag = tag;
+  setting.components = components;
+  return setting;
+}
+
+/// A displacement pulse along x that is there at the start.
+template <int dim> fem::InitialSetting<dim> started(const fem::InitialPulse& pulse) {
+  fem::InitialSetting<dim> setting;
+  setting.pulse = pulse;
+  return setting;
 }
 
 /// alpha that rises linearly from zero at x = begin to one at x = begin + width.

@@ -28,10 +28,11 @@ template <class Body> std::string refusal(const Message& message) {
 }
 
 /// A message whose body is changed at one place.
-template <class Body> Message with(const Body& body, const char* pointer, const json& value) {
+/// @param value  JSON text
+template <class Body> Message with(const Body& body, const char* pointer, const char* value) {
   Message message = to_message(body);
   json changed = json::parse(message.body);
-  changed[json::json_pointer(pointer)] = value;
+  changed[json::json_pointer(pointer)] = json::parse(value);
   message.body = changed.dump();
   return message;
 }
@@ -141,34 +142,35 @@ TEST(Bodies, of_another_type_are_refused_by_both_names) {
 }
 
 TEST(Bodies, of_another_version_of_the_protocol_are_refused) {
-  EXPECT_NE(refusal<Hello>(with(Hello{}, "/protocol", 2)), "");
+  EXPECT_NE(refusal<Hello>(with(Hello{}, "/protocol", "2")), "");
 }
 
 TEST(Bodies, with_values_of_the_wrong_kind_are_refused) {
-  EXPECT_NE(refusal<Hello>(with(Hello{}, "/name", 1)), "");
-  EXPECT_NE(refusal<Hello>(with(Hello{}, "/pid", -1)), "");
-  EXPECT_NE(refusal<Assignment>(with(Assignment{"", "{}", "{}", {}}, "/settings", "text")), "");
-  EXPECT_NE(refusal<Progress>(with(Progress{}, "/step", -1)), "");
-  EXPECT_NE(refusal<Progress>(with(Progress{}, "/step", 0.5)), "");
-  EXPECT_NE(refusal<Progress>(with(Progress{}, "/waiting_seconds", nullptr)), ""); // NaN as JSON
-  EXPECT_NE(refusal<Finished>(with(Finished{}, "/summary", 1)), "");
-  EXPECT_NE(refusal<ErrorReport>(with(ErrorReport{}, "/kind", "bored")), "");
-  EXPECT_NE(refusal<Plan>(with(plan(), "/interfaces/0/motion/0", "colour")), "");
-  EXPECT_NE(refusal<Plan>(with(plan(), "/interfaces/0", 1)), "");
-  EXPECT_NE(refusal<Plan>(with(plan(), "/interfaces", json::array({1, 2, 3, 4, 5, 6, 7}))), "");
-  EXPECT_NE(refusal<Limits>(with(Limits{}, "/interfaces", 1'000'000'000'000)), "");
+  EXPECT_NE(refusal<Hello>(with(Hello{}, "/name", "1")), "");
+  EXPECT_NE(refusal<Hello>(with(Hello{}, "/pid", "-1")), "");
+  EXPECT_NE(refusal<Assignment>(with(Assignment{"", "{}", "{}", {}}, "/settings", R"("text")")),
+            "");
+  EXPECT_NE(refusal<Progress>(with(Progress{}, "/step", "-1")), "");
+  EXPECT_NE(refusal<Progress>(with(Progress{}, "/step", "0.5")), "");
+  EXPECT_NE(refusal<Progress>(with(Progress{}, "/waiting_seconds", "null")), ""); // NaN as JSON
+  EXPECT_NE(refusal<Finished>(with(Finished{}, "/summary", "1")), "");
+  EXPECT_NE(refusal<ErrorReport>(with(ErrorReport{}, "/kind", R"("bored")")), "");
+  EXPECT_NE(refusal<Plan>(with(plan(), "/interfaces/0/motion/0", R"("colour")")), "");
+  EXPECT_NE(refusal<Plan>(with(plan(), "/interfaces/0", "1")), "");
+  EXPECT_NE(refusal<Plan>(with(plan(), "/interfaces", "[1, 2, 3, 4, 5, 6, 7]")), "");
+  EXPECT_NE(refusal<Limits>(with(Limits{}, "/interfaces", "1000000000000")), "");
   EXPECT_NE(refusal<Stop>({"stop", "[]", {}}), "");
 }
 
 TEST(Bodies, of_schedules_without_sense_are_refused) {
   const Schedule s{.time_step = 1e-6, .steps = 10};
   EXPECT_EQ(refusal<Schedule>(to_message(s)), "");
-  EXPECT_NE(refusal<Schedule>(with(s, "/time_step", 0)), "");
-  EXPECT_NE(refusal<Schedule>(with(s, "/time_step", -1e-6)), "");
-  EXPECT_NE(refusal<Schedule>(with(s, "/history_every", 0)), "");
-  EXPECT_NE(refusal<Schedule>(with(s, "/layout", "12 apples")), "");
-  EXPECT_NE(refusal<Schedule>(with(s, "/channel", "shm")), "");
-  EXPECT_NE(refusal<Schedule>(with(s, "/channel", {{"transport", "shm"}})), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/time_step", "0")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/time_step", "-1e-6")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/history_every", "0")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/layout", R"("12 apples")")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/channel", R"("shm")")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/channel", R"({"transport": "shm"})")), "");
 }
 
 TEST(Declaration, is_refused_with_the_first_fault) {

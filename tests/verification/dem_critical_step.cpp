@@ -129,7 +129,7 @@ TEST(CriticalStep, from_the_eigenvalues_separates_stable_from_unstable) {
     if (factor < 1.0)
       EXPECT_LT(end, 50.0);
     else
-      EXPECT_GT(end, 1e6);
+      EXPECT_FALSE(end < 1e6); // it may be lost altogether
   }
 }
 

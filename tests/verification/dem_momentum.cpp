@@ -23,7 +23,7 @@ template <int dim> void momentum_is_kept(dem::Settings<dim> settings) {
   settings.material.tensile_strength = settings.material.normal_stiffness * 1e-3 * spacing;
   settings.material.shear_strength = settings.material.tensile_strength;
   const double omega = std::sqrt(dem::Engine<dim>(settings).step_limit().omega2);
-  const double speed = 2e-3 * spacing * omega;
+  const double speed = 5e-4 * spacing * omega;
   cases::shake(settings, speed, 5);
   dem::Engine<dim> engine(settings);
   std::vector<double> weight(engine.size());

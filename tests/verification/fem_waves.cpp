@@ -56,16 +56,14 @@ TEST(FemPulse, travels_with_the_speeds_of_compression_and_shear_waves) {
        {Wave{"P", 0, std::sqrt(12e9 / 2500.0)}, Wave{"S", 1, std::sqrt(4e9 / 2500.0)}}) {
     const Mesh<2> mesh =
         make_box(BoxMesh<2>{.size = {320 * h, 3 * h}, .count = {320, 3}}, {.length = {0.0, 3 * h}});
-    Engine<2> engine(mesh, {.material = rock,
-                            .boundary = {},
-                            .initial = {{.box = {},
-                                         .velocity = {},
-                                         .pulse = InitialPulse{.amplitude = A,
-                                                               .center = from,
-                                                               .length = length,
-                                                               .wave_speed = wave.speed,
-                                                               .spacing = h,
-                                                               .component = wave.component}}}});
+    const InitialPulse pulse{.amplitude = A,
+                             .center = from,
+                             .length = length,
+                             .wave_speed = wave.speed,
+                             .spacing = h,
+                             .component = wave.component};
+    Engine<2> engine(mesh,
+                     {.material = rock, .boundary = {}, .initial = {cases::started<2>(pulse)}});
     const int steps = static_cast<int>(std::ceil(way / wave.speed / step_below_limit(engine, 0.8)));
     engine.start(way / wave.speed / steps);
     for (int n = 0; n < steps; ++n)
@@ -146,14 +144,10 @@ TYPED_TEST(FemBound, of_the_assembled_body_parts_stable_from_unstable_steps) {
   constexpr int dim = TypeParam::value;
   for (const bool blended : {false, true}) {
     const Mesh<dim> mesh = cases::distorted_box<dim>();
-    Engine<dim> engine(mesh, {.material = rock,
-                              .boundary = {},
-                              .initial = {{.box = {},
-                                           .velocity = {},
-                                           .pulse = InitialPulse{.amplitude = 1e-9,
-                                                                 .center = 1e-3,
-                                                                 .length = 1.7e-3,
-                                                                 .wave_speed = 2000.0}}}});
+    const InitialPulse pulse{
+        .amplitude = 1e-9, .center = 1e-3, .length = 1.7e-3, .wave_speed = 2000.0};
+    Engine<dim> engine(mesh,
+                       {.material = rock, .boundary = {}, .initial = {cases::started<dim>(pulse)}});
     if (blended)
       engine.set_weights(cases::ramp(mesh, 0.0, 3e-3));
     const double critical = 2.0 / std::sqrt(cases::largest_omega2(engine.elements(), rock));
@@ -205,15 +199,12 @@ TEST(FemEnergy, of_a_linear_body_drifts_by_less_than_1e_12_in_1e5_steps) {
   const BoxMesh<2> box{.size = {16e-3, 2e-3}, .count = {16, 2}};
   Mesh<2> mesh = make_box(box);
   cases::distort(mesh, box, 0.2);
-  Engine<2> engine(
-      mesh, {.material = rock,
-             .boundary = {{.tag = "right", .box = {}, .components = {true, true}},
-                          {.tag = "bottom", .box = {}, .components = {false, true}}},
-             .initial = {
-                 {.box = {},
-                  .velocity = {},
-                  .pulse = InitialPulse{
-                      .amplitude = 1e-7, .center = 8e-3, .length = 10e-3, .wave_speed = 2000.0}}}});
+  const InitialPulse pulse{
+      .amplitude = 1e-7, .center = 8e-3, .length = 10e-3, .wave_speed = 2000.0};
+  Engine<2> engine(mesh, {.material = rock,
+                          .boundary = {cases::held<2>("right", {true, true}),
+                                       cases::held<2>("bottom", {false, true})},
+                          .initial = {cases::started<2>(pulse)}});
   engine.set_weights(cases::ramp(mesh, -1e-3, 5e-3));
   const Drift result = drift(engine, 100000);
   EXPECT_LE(result.largest, 1e-12);
@@ -221,16 +212,12 @@ TEST(FemEnergy, of_a_linear_body_drifts_by_less_than_1e_12_in_1e5_steps) {
 }
 
 TEST(FemEnergy, of_a_linear_block_of_hex8_drifts_by_less_than_1e_12_in_1e5_steps) {
+  const InitialPulse pulse{
+      .amplitude = 1e-7, .center = 1e-3, .length = 3e-3, .wave_speed = 2000.0, .component = 1};
   Engine<3> engine(cases::distorted_box<3>(),
                    {.material = rock,
-                    .boundary = {{.tag = "left", .box = {}, .components = {true, true, true}}},
-                    .initial = {{.box = {},
-                                 .velocity = {},
-                                 .pulse = InitialPulse{.amplitude = 1e-7,
-                                                       .center = 1e-3,
-                                                       .length = 3e-3,
-                                                       .wave_speed = 2000.0,
-                                                       .component = 1}}}});
+                    .boundary = {cases::held<3>("left", {true, true, true})},
+                    .initial = {cases::started<3>(pulse)}});
   const Drift result = drift(engine, 100000);
   EXPECT_LE(result.largest, 1e-12);
   std::printf("  hex8: largest drift %.1e, at the end %+.1e\n", result.largest, result.at_end);
