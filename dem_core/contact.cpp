@@ -144,7 +144,8 @@ template <int dim> void blend(Contacts<dim>& contacts, const Particles<dim>& par
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const std::uint32_t i = contacts.first[k], j = contacts.second[k];
     const double r_i = particles.radius[i], r_j = particles.radius[j];
-    contacts.weight[k] = (r_j * particles.weight[i] + r_i * particles.weight[j]) / (r_i + r_j);
+    contacts.weight[k] =
+        bounded_share((r_j * particles.weight[i] + r_i * particles.weight[j]) / (r_i + r_j));
   }
 }
 

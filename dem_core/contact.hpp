@@ -61,8 +61,8 @@ template <int dim>
 void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
                     const Material& material, double skin, const Period<dim>& period);
 
-/// Sets w_c = (r_j w_i + r_i w_j) / (r_i + r_j): the weights of the particles, interpolated to the
-/// point of contact. One value for both sides keeps the pair of forces opposite.
+/// Sets w_c = (r_j w_i + r_i w_j) / (r_i + r_j): 1 - alpha, which is linear, at the point of
+/// contact, bounded there. One value for both sides keeps the pair of forces opposite.
 template <int dim> void blend(Contacts<dim>& contacts, const Particles<dim>& particles);
 
 /// Normal opening u_n of contact k with current branch b and relative displacement b - B, m.

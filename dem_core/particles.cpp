@@ -48,13 +48,14 @@ template <int dim> void blend(Particles<dim>& particles, std::span<const double>
         fmt::format("{} weights for {} particles", weight.size(), particles.size()));
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const double w = weight.empty() ? 1.0 : weight[i];
-    if (!(w > 0.0) || !std::isfinite(w))
-      throw std::invalid_argument(fmt::format("weight {} of particle {} must be positive", w, i));
+    if (!(w >= 0.0) || !std::isfinite(w))
+      throw std::invalid_argument(
+          fmt::format("weight {} of particle {} must not be negative", w, i));
     const double r = particles.radius[i];
     const double volume =
         dim == 2 ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
     particles.weight[i] = w;
-    particles.mass[i] = w * volume * particles.density;
+    particles.mass[i] = bounded_share(w) * volume * particles.density; // eqs 48-49
     particles.inertia[i] = (dim == 2 ? 0.5 : 0.4) * particles.mass[i] * r * r;
   }
 }

@@ -3,11 +3,21 @@
 
 #include "common/vec.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace kerf::dem {
+
+/// The least share of the virtual work that a particle or a contact keeps: with less, the blended
+/// mass goes to zero faster than the blended stiffness and the critical step with it.
+inline constexpr double least_share = 0.05;
+
+/// Share of the virtual work from 1 - alpha, which goes on linearly beyond the zone of blending.
+inline double bounded_share(double weight) {
+  return std::clamp(weight, least_share, 1.0);
+}
 
 /// All arrays have one entry a particle. Positions are kept as reference + displacement, so that
 /// small displacements lose no digits; they are never wrapped into a period.
@@ -16,7 +26,7 @@ template <int dim> struct Particles {
   std::vector<double> radius;      // m
   double density = 0.0;            // kg/m³
 
-  std::vector<double> weight;  // share in the blended virtual work, > 0
+  std::vector<double> weight;  // 1 - alpha at the centre; above one outside the zone of blending
   std::vector<double> mass;    // blended, kg; pi r² rho or 4/3 pi r³ rho
   std::vector<double> inertia; // blended, kg m²; m r² / 2 or 2/5 m r²
 
@@ -37,9 +47,9 @@ template <int dim>
 Particles<dim> make_particles(std::span<const Vec<dim>> positions, std::span<const double> radii,
                               double density);
 
-/// Scales masses and moments of inertia.
-/// @param weight  [n] share of each particle; empty: one everywhere
-/// @throws std::invalid_argument when the size is wrong or a weight is not positive and finite
+/// Scales masses and moments of inertia by bounded_share().
+/// @param weight  [n] 1 - alpha of each particle; empty: one everywhere
+/// @throws std::invalid_argument when the size is wrong or a weight is negative or not finite
 template <int dim> void blend(Particles<dim>& particles, std::span<const double> weight);
 
 } // namespace kerf::dem

@@ -31,7 +31,7 @@ public:
 
 private:
   void set_weights(const Declaration& particles, const std::vector<double>& node_alpha,
-                   const std::vector<double>& point_alpha);
+                   const std::vector<double>& point_alpha, const std::vector<double>& distance);
   void predict_gap(std::uint64_t step, const Motion& a, const Motion& b);
 
   OverlapSettings settings_;
@@ -125,19 +125,24 @@ OverlapCoupling<dim>::OverlapCoupling(const OverlapSettings& settings, const Dec
   const std::vector<double> no_offset = offset_;
   constraint<dim>(N_, pick(particles.positions, inside, dim), pick(mesh.positions, nodes, dim),
                   no_offset, offset_);
-  set_weights(particles, node_alpha, point_alpha);
+  set_weights(particles, node_alpha, point_alpha, distance_of(particles.positions, settings.width));
 }
 
+/// @param distance  [all particles] to the boundary where alpha = 0, m
 template <int dim>
 void OverlapCoupling<dim>::set_weights(const Declaration& particles,
                                        const std::vector<double>& node_alpha,
-                                       const std::vector<double>& point_alpha) {
+                                       const std::vector<double>& point_alpha,
+                                       const std::vector<double>& distance) {
   if (settings_.blending) {
-    side_[0].weights.assign(particles.ids.size(), 1.0);
+    // Outside the mesh alpha goes on below zero, so that a contact across the boundary finds the
+    // right value between its particles.
+    std::vector<double>& weights = side_[0].weights;
+    for (const double d : distance)
+      weights.push_back(1.0 + std::min(d / settings_.width, 1.0));
     for (std::size_t i = 0; i < point_alpha.size(); ++i)
-      side_[0].weights[side_[0].points[i]] =
-          std::max(1.0 - point_alpha[i], least_particle_weight); // eqs 47-50
-    side_[1].weights = node_alpha;                               // eqs 44-46
+      weights[side_[0].points[i]] = 1.0 - point_alpha[i]; // eqs 47-50
+    side_[1].weights = node_alpha;                        // eqs 44-46
   }
   if (!settings_.lagrange)
     side_[0].stiffness = penalty_stiffness(

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace kerf::coupler {
 namespace {
@@ -12,6 +13,14 @@ using nlohmann::json;
 /// Text from outside need not be UTF-8: a path, a line of a file quoted in an error.
 std::string text(const json& body) {
   return body.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+/// @throws std::invalid_argument
+json object(const std::string& body, const char* what) {
+  json parsed = json::parse(body, nullptr, false);
+  if (!parsed.is_object())
+    throw std::invalid_argument(fmt::format("the {} is no JSON object: {}", what, body));
+  return parsed;
 }
 
 template <class Value>
@@ -44,8 +53,8 @@ Message to_message(const Hello& body) {
 Message to_message(const Assignment& body) {
   return {message::assignment,
           text({{"name", body.name},
-                {"settings", json::parse(body.settings)},
-                {"case", json::parse(body.case_settings)},
+                {"settings", object(body.settings, "settings")},
+                {"case", object(body.case_settings, "case")},
                 {"run_folder", body.run_folder.string()},
                 {"plan_only", body.plan_only},
                 {"broker_pid", body.broker_pid}}),
@@ -136,7 +145,7 @@ Message to_message(const Finished& body) {
                 {"compute_seconds", body.compute_seconds},
                 {"exchange_seconds", body.exchange_seconds},
                 {"waiting_seconds", body.waiting_seconds},
-                {"summary", json::parse(body.summary)}}),
+                {"summary", object(body.summary, "summary")}}),
           {}};
 }
 

@@ -68,8 +68,10 @@ struct Interface {
 
 /// The broker's answer to a declaration.
 struct Plan {
-  /// Share of each point in the blended virtual work: w_i of particles, alpha of nodes
-  /// (interpolated to the quadrature points). [num_points]; empty: one everywhere.
+  /// Blending of each point. Nodes: alpha, interpolated to the quadrature points. Particles:
+  /// 1 - alpha, which goes on linearly outside the zone, above one. A contact takes it at its
+  /// point, (r_j w_i + r_i w_j) / (r_i + r_j); then contacts and particles bound it to 0.05 … 1.
+  /// [num_points]; empty: one everywhere.
   std::vector<double> weights;
   std::vector<Interface> interfaces;
   bool needs_own_forces = false; // a method that solves for the forces: publish_forces() matters
@@ -123,6 +125,7 @@ struct Stop {
   std::string reason; // one sentence for the participant's log
 };
 
+/// @throws std::invalid_argument when text that should be a JSON object is none
 Message to_message(const Hello& body);
 Message to_message(const Assignment& body);
 Message to_message(const Declaration& body);

@@ -1,9 +1,10 @@
 // Control messages between the broker's router socket and the participants' dealer sockets.
 #include "coupler/channel/control.hpp"
 
+#include "coupler/channel/bodies.hpp"
+
 #include <cerrno>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <zmq.hpp>
 
@@ -93,9 +94,8 @@ std::optional<ControlServer::Incoming> ControlServer::receive(std::chrono::milli
   try {
     incoming.message = decode(parts);
   } catch (const ProtocolError& error) {
-    const nlohmann::json reason = {
-        {"reason", fmt::format("the broker refuses a message: {}", error.what())}};
-    send(incoming.peer, {message::stop, reason.dump(), {}});
+    send(incoming.peer,
+         to_message(Stop{fmt::format("the broker refuses a message: {}", error.what())}));
     throw ProtocolError(fmt::format("from peer {}: {}", readable(incoming.peer), error.what()));
   }
   return incoming;

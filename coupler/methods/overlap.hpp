@@ -9,10 +9,6 @@
 
 namespace kerf::coupler {
 
-/// The least share of the virtual work that a particle keeps: with less, the blended mass goes to
-/// zero faster than the blended stiffness and the critical step with it.
-inline constexpr double least_particle_weight = 0.05;
-
 /// Shortest distance from each point to the faces of a boundary, Rojek (2008) eqs 31-32.
 ///
 /// @param faces   [num_faces][2 in 2D, 4 in 3D] node indices; a quadrilateral counts as two

@@ -95,6 +95,7 @@ public:
 
   /// Ends the run: reports the time spent waiting and what the caller adds, waits for the others.
   /// @param summary  JSON object for run.json, for example timings by phase
+  /// @throws std::invalid_argument when the summary is no JSON object
   void finalize(const std::string& summary = "{}");
 
   /// Tells the broker why this participant cannot go on; the caller then ends the process.
