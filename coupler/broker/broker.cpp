@@ -211,7 +211,7 @@ void Broker::make_couplings() {
         m.plan.weights = side.weights;
       else if (!side.weights.empty())
         for (std::size_t p = 0; p < side.weights.size(); ++p)
-          m.plan.weights[p] *= side.weights[p];
+          m.plan.weights[p] = std::min(m.plan.weights[p], side.weights[p]);
     }
   }
   refuse_shared_points();
@@ -280,7 +280,7 @@ void Broker::choose_time_step() {
       throw RunError(ErrorKind::bad_input, "case.time_step",
                      fmt::format("{:g} s is above the critical time step of {:.6g} s, which {} "
                                  "sets\ngive at most {:.3g}, or \"auto\"",
-                                 step, critical_step_, limited_by_, 0.999 * critical_step_));
+                                 step, critical_step_, limited_by_, 0.99 * critical_step_));
   } else if (std::isinf(critical_step_)) {
     throw RunError(ErrorKind::bad_input, "case.time_step",
                    "\"auto\" finds nothing that limits the step\ngive a number in seconds");
@@ -300,8 +300,6 @@ void Broker::choose_time_step() {
   };
   schedule_.history_every = std::max<std::uint64_t>(1, every("history"));
   schedule_.frame_every = every("frames");
-  if (setup_.plan_only)
-    schedule_.steps = 0;
 }
 
 void Broker::open_channels() {
@@ -309,6 +307,8 @@ void Broker::open_channels() {
     joint.coupling->start(schedule_.time_step);
   for (Member& m : members_) {
     Schedule schedule = schedule_;
+    if (setup_.plan_only)
+      schedule.steps = 0;
     if (!m.plan.interfaces.empty() && !setup_.plan_only) {
       m.layout = FrameLayout(m.declaration.dimension, m.declaration.ids, m.plan.interfaces);
       m.address.transport = setup_.transport;
@@ -335,7 +335,6 @@ void Broker::open_channels() {
 void Broker::await_finish() {
   while (std::ranges::any_of(members_, [](const Member& m) { return !m.finished; })) {
     serve(std::chrono::milliseconds(50));
-    check_silence();
   }
 }
 
@@ -370,6 +369,7 @@ void Broker::serve(std::chrono::milliseconds limit) {
     else
       greet(incoming->peer, incoming->message);
   }
+  check_silence();
   report_progress();
 }
 
@@ -408,11 +408,15 @@ void Broker::handle(Member& m, const Message& message) {
   }
 }
 
-/// A participant without interfaces shows by its progress that it lives.
+/// A participant without interfaces, or at the end of its run, shows by its progress that it lives;
+/// the frames of the others have deadlines of their own.
 void Broker::check_silence() {
+  if (!phase_.empty())
+    return;
   const double limit = setup_.settings.at("case").at("hang_limit");
   for (const Member& m : members_)
-    if (!m.finished && Clock::now() - m.heard > std::chrono::duration<double>(limit))
+    if (!m.finished && (!m.channel || step_ == schedule_.steps) &&
+        Clock::now() - m.heard > std::chrono::duration<double>(limit))
       throw RunError(ErrorKind::failed, "",
                      fmt::format("participant \"{}\" (pid {}) was silent for {:g} s at step {} of "
                                  "{}. Its log: {}",
@@ -483,7 +487,7 @@ std::string Broker::place_of(const Member& m) const {
 }
 
 void Broker::report_progress() {
-  if (!setup_.progress || schedule_.steps == 0 ||
+  if (!setup_.progress || !phase_.empty() ||
       Clock::now() - last_report_ < std::chrono::milliseconds(200))
     return;
   last_report_ = Clock::now();
@@ -496,8 +500,7 @@ nlohmann::json Broker::record() const {
   record["time_step"] = schedule_.time_step;
   record["critical_time_step"] = critical_step_;
   record["limited_by"] = limited_by_;
-  record["steps"] = static_cast<std::uint64_t>(
-      std::llround(setup_.settings.at("case").at("end_time").get<double>() / schedule_.time_step));
+  record["steps"] = schedule_.steps;
   record["transport"] = setup_.transport;
   for (const Member& m : members_) {
     nlohmann::json& entry = record["participants"][m.name];

@@ -1,8 +1,11 @@
 // kerf - couples discrete element and finite element programs in one run.
+#include "common/config/case_reader.hpp"
 #include "common/exit_code.hpp"
 #include "coupler/commands/commands.hpp"
 
 #include <CLI/CLI.hpp>
+
+#include <cstdio>
 
 int main(int argc, char** argv) {
   using kerf::commands::RunOptions;
@@ -30,6 +33,10 @@ int main(int argc, char** argv) {
   CLI::App* check = app.add_subcommand("check", "Checks a case and prints its plan, runs nothing");
   add_case(check);
   check->callback([&] { exit_code = kerf::commands::check(options); });
+
+  CLI::App* reference = app.add_subcommand(
+      "reference", "Prints every key of a case with its unit, default and range");
+  reference->callback([] { std::fputs(kerf::config::reference_toml().c_str(), stdout); });
 
   try {
     app.parse(argc, argv);

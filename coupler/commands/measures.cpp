@@ -123,6 +123,8 @@ double incident_energy(const Histories& histories, const nlohmann::json& m) {
 std::vector<Measure> measure(const CaseFile& case_file, const std::filesystem::path& run_folder,
                              double wall_time) {
   const nlohmann::json& settings = case_file.settings();
+  if (settings.at("measures").empty())
+    return {}; // participants of the user's own need not write histories
   const Histories histories(settings, run_folder);
   const auto wave_energy = [&](const nlohmann::json& m) {
     return energy_in_region(run_folder, settings, m) / incident_energy(histories, m);

@@ -66,11 +66,13 @@ std::vector<Point> origins(const Frame& frame, const std::string& grid) {
   return result;
 }
 
-double squared_difference(const Array& a, std::size_t i, const Array& b, std::size_t j, bool have) {
+/// |a_i - factor b_j|²
+double squared_difference(const Array& a, std::size_t i, const Array& b, std::size_t j,
+                          double factor) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.columns; ++k) {
-    const double difference =
-        a.reals()[i * a.columns + k] - (have ? b.reals()[j * b.columns + k] : 0.0);
+    const double difference = a.reals()[i * a.columns + k] -
+                              (factor != 0.0 ? factor * b.reals()[j * b.columns + k] : 0.0);
     sum += difference * difference;
   }
   return sum;
@@ -115,8 +117,9 @@ double particle_energy(const Frame& frame, const Frame* reference, const Box& bo
     const double inertia = (dimension == 2 ? 0.5 : 0.4) * m * r * r; // disc, sphere
     for (const auto& [field, factor] :
          {std::pair{"particles/velocity", m}, std::pair{"particles/angular_velocity", inertia}})
-      energy += 0.5 * factor *
-                squared_difference(frame.at(field), i, other.at(field), match[i], reference);
+      energy +=
+          0.5 * factor *
+          squared_difference(frame.at(field), i, other.at(field), match[i], reference ? 1.0 : 0.0);
   }
 
   using Pair = std::pair<std::size_t, std::size_t>;
@@ -141,17 +144,22 @@ double particle_energy(const Frame& frame, const Frame* reference, const Box& bo
     if (!box.contains(middle))
       continue;
     std::size_t partner = 0;
-    bool have = false;
+    double turned = 0.0; // none; or -1 where the reference sees the pair from its other end
     if (reference) {
       const auto found = other_contact.find(ordered(match[i], match[j]));
-      have = found != other_contact.end();
-      partner = have ? found->second : 0;
+      if (found != other_contact.end()) {
+        partner = found->second;
+        turned = match[i] < match[j] ? 1.0 : -1.0;
+      }
     }
-    for (const auto& [field, k] : {std::pair{"contacts/normal_force", k_n[c]},
-                                   std::pair{"contacts/tangential_force", k_t[c]}})
-      if (k > 0.0)
-        energy += 0.5 * weight[c] / k *
-                  squared_difference(frame.at(field), c, other.at(field), partner, have);
+    const double k_normal = k_n[c], k_tangential = k_t[c];
+    energy += 0.5 * weight[c] / k_normal *
+              squared_difference(frame.at("contacts/normal_force"), c,
+                                 other.at("contacts/normal_force"), partner, std::abs(turned));
+    if (k_tangential > 0.0)
+      energy += 0.5 * weight[c] / k_tangential *
+                squared_difference(frame.at("contacts/tangential_force"), c,
+                                   other.at("contacts/tangential_force"), partner, turned);
   }
   return energy;
 }
@@ -163,7 +171,7 @@ double mesh_energy(const Frame& frame, const Box& box) {
   double energy = 0.0;
   for (std::size_t n = 0; n < X.size(); ++n)
     if (box.contains(X[n]))
-      energy += 0.5 * mass[n] * squared_difference(velocity, n, velocity, n, false);
+      energy += 0.5 * mass[n] * squared_difference(velocity, n, velocity, n, 0.0);
   const Array& cells = frame.at("mesh/cells");
   const auto& elastic = frame.at("mesh/elastic_energy").reals();
   for (std::size_t e = 0; e < cells.rows; ++e) {

@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <stdexcept>
 #include <sys/eventfd.h>
+#include <sys/prctl.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -27,6 +28,8 @@ Lifeline::Lifeline(int descriptor) : descriptor_(descriptor) {
   pthread_sigmask(SIG_SETMASK, &all, &before);
   thread_ = std::thread([this] { watch(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  // Until here the launcher's death ended this process by a signal; from now on it ends in order.
+  prctl(PR_SET_PDEATHSIG, 0);
 }
 
 Lifeline::~Lifeline() {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -31,6 +33,14 @@ template <int dim> std::vector<Column> history_columns() {
   for (int axis = 0; axis < dim; ++axis)
     columns.push_back({fmt::format("momentum_{}", "xyz"[axis]), "N s"});
   return columns;
+}
+
+/// The node with the largest component of a velocity [num_nodes][dim].
+template <int dim> std::size_t fastest_node(std::span<const double> velocity) {
+  const auto fastest = std::max_element(velocity.begin(), velocity.end(), [](double a, double b) {
+    return std::abs(a) < std::abs(b);
+  });
+  return static_cast<std::size_t>(fastest - velocity.begin()) / dim;
 }
 
 /// A stress in Voigt's order: xx, yy, xy; or xx, yy, zz, yz, xz, xy.
@@ -104,6 +114,10 @@ template <int dim> void Output<dim>::write_history(std::uint64_t step, double ti
                              energies.kinetic,          energies.elastic,
                              energies.external_work,    energies.interface_work};
   row.insert(row.end(), momentum.begin(), momentum.end());
+  if (!std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
+    throw std::runtime_error(
+        fmt::format("the energies are not finite numbers at t = {} s (step {}); node {} is fastest",
+                    time, step, fastest_node<dim>(engine_.velocity())));
   history_.append(row);
 }
 

@@ -13,8 +13,9 @@
 
 namespace kerf::fem {
 
-/// What the loop of an engine calls when results are due. Both throw std::runtime_error, with the
-/// node and the time, when the motion is no longer a finite number.
+/// What the loop of an engine calls when results are due. Both throw std::runtime_error, with a
+/// node and the time, when the motion or its energies are no longer finite numbers; nothing of that
+/// moment is written then.
 template <int dim> class Output {
 public:
   /// @param alpha  [num_nodes] share of the elements in the blended virtual work; empty: one

@@ -19,6 +19,27 @@ foreach(case wave_chain wave_bar wave_block)
                    ${CMAKE_CURRENT_BINARY_DIR}/runs/${case})
 endforeach()
 
+# Variants of the chain: what they may reflect, from an independent study of chains (see
+# docs/theory/coupling.md).
+function(kerf_chain_variant name least most)
+  set(arguments --set measures.reflected_energy.expect.min=${least}
+                --set measures.reflected_energy.expect.max=${most})
+  foreach(setting ${ARGN})
+    list(APPEND arguments --set ${setting})
+  endforeach()
+  add_test(NAME case.wave_chain.${name}
+           COMMAND kerf_program run ${CMAKE_SOURCE_DIR}/configs/wave_chain.toml --out
+                   ${CMAKE_CURRENT_BINARY_DIR}/runs/wave_chain_${name} ${arguments})
+endfunction()
+set(penalty couplings.joint.method=penalty measures.constraint_violation.expect.max=1e-6)
+kerf_chain_variant(elements_of_two_spacings 0 5e-4 "participants.bar.mesh.count=[60, 1]"
+                   couplings.joint.width=8e-3 "participants.chain.particles.lattice.count=[108, 1]")
+kerf_chain_variant(elements_of_four_spacings 0 5e-3 "participants.bar.mesh.count=[30, 1]"
+                   couplings.joint.width=16e-3 "participants.chain.particles.lattice.count=[116, 1]")
+kerf_chain_variant(penalty_1 0 1.5e-3 ${penalty})
+kerf_chain_variant(penalty_3 0 2e-4 ${penalty} couplings.joint.stiffness_ratio=3.0)
+kerf_chain_variant(without_blending 0.16 0.18 couplings.joint.blending=false)
+
 kerf_python_test(coupled.bits coupled/bits.py Bits coupled)
 kerf_python_test(fault.shm coupled/faults.py Fault fault)
 kerf_python_test(fault.zmq coupled/faults.py FaultOverZeroMq fault)

@@ -11,7 +11,8 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from kerf_process import CONFIGS, KerfTest, is_alive, sockets_and_segments, wait_until_gone
 
-LONG = ("--set", "case.end_time=10.0")  # hours of steps: it ends when the test ends it
+LONG = ("--set", "case.end_time=10.0",  # hours of steps: it ends when the test ends it
+        "--set", "case.output.history=1000000", "--set", "case.output.frames=20000")
 
 
 class Fault(KerfTest):
@@ -20,8 +21,7 @@ class Fault(KerfTest):
     def setUp(self):
         super().setUp()
         self.before = sockets_and_segments()
-        self.run_ = self.start(CONFIGS / "wave_bar.toml", "--transport", self.transport, *LONG,
-                               "--set", "case.output.frames=100000")
+        self.run_ = self.start(CONFIGS / "wave_bar.toml", "--transport", self.transport, *LONG)
         self.participants = self.run_.children()
         self.addCleanup(self.kill_everything)
         self.assertEqual(set(self.participants), {"rock", "far", "whole"})

@@ -101,8 +101,8 @@ TEST_P(Loopback, a_run_has_the_bits_of_a_run_with_processes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Loopback, testing::Values("wave_chain.toml", "wave_bar.toml"),
-                         [](const auto& info) {
-                           return fs::path(info.param).stem().string();
+                         [](const auto& parameter) {
+                           return fs::path(parameter.param).stem().string();
                          });
 
 } // namespace

@@ -165,5 +165,19 @@ TEST(Blending, interpolates_weights_to_the_point_of_contact) {
   EXPECT_NEAR(inertia, 0.4 * full * 0.75e-3 * 0.75e-3, 1e-15 * inertia);
 }
 
+// 1 - alpha is linear and may leave [0.05, 1] at a centre while the point of contact lies inside:
+// the bounds hold where the weight is used, at the contact and for the mass.
+TEST(Blending, bounds_the_share_at_the_contact_and_of_the_mass_each_for_itself) {
+  dem::Engine<2> engine(cases::pair_model<2>({1.0, 0.0}, rock(2)));
+  const double full = engine.particles().mass[0];
+  const double beyond[] = {1.2, 0.6}, nothing[] = {0.0, 0.02};
+  engine.set_weights(beyond);
+  EXPECT_DOUBLE_EQ(engine.contacts().weight[0], 0.9);
+  EXPECT_DOUBLE_EQ(engine.particles().mass[0], full);
+  engine.set_weights(nothing);
+  EXPECT_DOUBLE_EQ(engine.contacts().weight[0], 0.05);
+  EXPECT_DOUBLE_EQ(engine.particles().mass[0], 0.05 * full);
+}
+
 } // namespace
 } // namespace kerf

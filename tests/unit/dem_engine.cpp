@@ -126,10 +126,10 @@ TEST(Engine, blown_up_by_a_step_far_too_large_ends) {
   EXPECT_NE(engine.first_not_finite(), std::nullopt);
 }
 
-TEST(Engine, refuses_weights_that_leave_a_particle_without_mass) {
+TEST(Engine, refuses_weights_that_are_negative_or_do_not_fit) {
   dem::Engine<2> engine(cases::pair_model<2>({1.0, 0.0}, rock(2)));
-  const double zero[] = {1.0, 0.0}, one[] = {1.0};
-  EXPECT_THROW(engine.set_weights(zero), std::invalid_argument);
+  const double negative[] = {1.0, -0.1}, one[] = {1.0};
+  EXPECT_THROW(engine.set_weights(negative), std::invalid_argument);
   EXPECT_THROW(engine.set_weights(one), std::invalid_argument);
 }
 

@@ -134,7 +134,7 @@ TEST_F(FemParticipant, answers_settings_it_cannot_use_with_their_key) {
 }
 
 // A step far above the critical one overflows within some hundred steps.
-TEST_F(FemParticipant, ends_with_the_node_and_the_time_when_the_motion_is_no_longer_finite) {
+TEST_F(FemParticipant, ends_with_a_node_and_the_time_when_the_motion_is_no_longer_finite) {
   join(settings);
   broker.await<Declaration>(message::declaration);
   broker.say(Plan{});
@@ -142,8 +142,9 @@ TEST_F(FemParticipant, ends_with_the_node_and_the_time_when_the_motion_is_no_lon
   broker.say(Schedule{.time_step = 1e-6, .steps = 1000, .history_every = 10});
   const auto report = broker.await<ErrorReport>(message::error);
   EXPECT_EQ(report.kind, ErrorKind::failed);
-  EXPECT_NE(report.sentence.find("is not a finite number at t ="), std::string::npos);
-  EXPECT_NE(report.sentence.find("the motion of node "), std::string::npos);
+  EXPECT_NE(report.sentence.find(" at t = "), std::string::npos) << report.sentence;
+  EXPECT_NE(report.sentence.find(" finite number"), std::string::npos) << report.sentence;
+  EXPECT_NE(report.sentence.find("node "), std::string::npos) << report.sentence;
   EXPECT_THROW(end.get(), std::runtime_error);
   for (const auto& row : read_history(folder / "history" / "rock.csv").rows)
     for (const double value : row)
