@@ -23,9 +23,8 @@ struct Assembled {
     const double mass_per_length = model.particle_mass() / d;
     const bool blended = model.overlap.blending;
     const auto alpha = [&](double x) { return blended ? std::clamp(x / zone, 0.0, 1.0) : 1.0; };
-    const auto particle_weight = [&](int i) {
-      const double x = model.particle_x(i);
-      return x < 0.0 || !blended ? 1.0 : std::max(1.0 - x / zone, 0.05);
+    const auto share = [&](double x) { // of the particles and of their contacts, at their places
+      return blended ? std::clamp(1.0 - x / zone, 0.05, 1.0) : 1.0;
     };
     K.setZero(n + columns, n + columns);
     M.setZero(n + columns);
@@ -36,10 +35,10 @@ struct Assembled {
       K(b, a) -= k;
     };
     for (int i = 0; i < n; ++i) {
-      M[i] = particle_weight(i) * model.particle_mass();
+      const double x = model.particle_x(i);
+      M[i] = share(x) * model.particle_mass();
       if (i + 1 < n)
-        spring(i, i + 1,
-               0.5 * (particle_weight(i) + particle_weight(i + 1)) * model.normal_stiffness);
+        spring(i, i + 1, share(x + 0.5 * d) * model.normal_stiffness);
     }
     for (int e = 0; e + 1 < columns; ++e) {
       const double a = alpha(e * h), b = alpha((e + 1) * h); // alpha is linear in the element
@@ -219,9 +218,9 @@ double speed_after(const ChainAndBar& model, double time_step, int steps) {
   double largest = 0.0;
   for (int n = 0; n < steps; ++n) {
     system.step();
-    if (n % 1000 == 0 || n + 1 == steps)
+    if (n % 100 == 0 || n + 1 == steps)
       for (const Vec<2>& v : system.dem.particles().velocity)
-        largest = std::max(largest, v.cwiseAbs().maxCoeff());
+        largest = v.allFinite() ? std::max(largest, v.cwiseAbs().maxCoeff()) : INFINITY;
     if (!(largest < 1e3))
       break;
   }
@@ -241,39 +240,52 @@ TEST(OverlapChain, it_is_stable_at_099_of_the_critical_step_and_flies_apart_at_1
 
 /// A Hann pulse of 32 d that runs from the chain into the bar.
 struct Pulse {
-  double reflected = 0.0; // energy left in x < -3 d over the incident energy
+  double reflected = 0.0; // energy that came back into x < -3 d over the incident energy
   double drift = 0.0;     // of the total energy
 };
 
+/// What comes back is the difference from a chain that goes on for ever: the pulse has a tail of
+/// short slow waves of its own, which is not the interface's.
 Pulse send_pulse(ChainAndBar model, int extra_steps = 0) {
   const double d = model.spacing, length = 32.0 * d;
   const double c = d * std::sqrt(model.normal_stiffness / model.particle_mass());
-  model.particles_outside = 100;
-  model.elements_outside = 120 / model.element_ratio;
-  dem::Settings<2> particles = model.dem_settings();
   dem::InitialCondition<2> start;
   start.pulse = dem::Pulse{
       .amplitude = 1e-3 * d, .center = -40.0 * d, .length = length, .wave_speed = c, .spacing = d};
+  model.particles_outside = 100;
+  model.elements_outside = 120 / model.element_ratio;
+  dem::Settings<2> particles = model.dem_settings();
   particles.initial.push_back(start);
   CoupledSystem system = model.system(particles, model.fem_settings());
+  while (particles.positions.size() < 220) {
+    particles.positions.push_back(particles.positions.back() + Vec<2>(d, 0.0));
+    particles.radii.push_back(0.5 * d);
+  }
+  dem::Engine<2> whole(particles);
+
   const double dt = 0.8 * 2.0 / Assembled(model).largest_frequency(model.overlap.lagrange);
   system.start(dt);
-  system.step();
+  whole.start(dt);
+  const auto step = [&] {
+    system.step();
+    whole.compute_own_forces();
+    whole.integrate();
+  };
+  step();
   const double incident = system.energy();
-  // Until the pulse has left the overlap by a few spacings, before its echo comes to the far end.
+  // Until the pulse has left the overlap, before its echo comes to the far end of the chain.
   const double distance = 40.0 * d + 0.5 * length + model.zone() + 6.0 * d;
   for (double t = dt; t < distance / c; t += dt)
-    system.step();
+    step();
+
   Pulse result;
-  const auto& contacts = system.dem.contacts();
-  const auto& p = system.dem.particles();
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p.reference[i][0] < -3.0 * d)
-      result.reflected += 0.5 * p.mass[i] * p.velocity[i].squaredNorm();
-  for (std::size_t k = 0; k < contacts.size(); ++k)
-    if (p.reference[contacts.second[k]][0] < -2.5 * d)
-      result.reflected +=
-          0.5 * std::pow(contacts.normal_force[k], 2) / contacts.normal_stiffness[k];
+  const auto &p = system.dem.particles(), &q = whole.particles();
+  const auto &contacts = system.dem.contacts(), &others = whole.contacts();
+  for (std::size_t i = 0; p.reference[i][0] < -3.0 * d; ++i) { // contact i joins i and i + 1
+    const double force = contacts.normal_force[i] - others.normal_force[i];
+    result.reflected += 0.5 * p.mass[i] * (p.velocity[i] - q.velocity[i]).squaredNorm() +
+                        0.5 * force * force / contacts.normal_stiffness[i];
+  }
   result.reflected /= incident;
   for (int n = 0; n < extra_steps; ++n)
     system.step();
@@ -285,7 +297,7 @@ struct Reflection {
   int element_ratio, width;
   bool lagrange;
   double ratio;
-  double least, most;
+  double most;
 };
 
 // Accepted values: an independent study of these equations on chains (linear shares, floor of 0.05)
@@ -293,9 +305,9 @@ struct Reflection {
 // for penalties of 4 alpha (1 - alpha) kappa k_n with kappa = 1 and 3.
 TEST(OverlapChain, a_pulse_of_32_spacings_is_reflected_as_little_as_the_theory_allows) {
   const Reflection cases[] = {
-      {1, 4, true, 1.0, 0.0, 2e-5},  {2, 4, true, 1.0, 0.0, 5e-4}, {4, 4, true, 1.0, 0.0, 5e-3},
-      {1, 2, true, 1.0, 0.0, 2e-5},  {1, 8, true, 1.0, 0.0, 2e-5}, {1, 4, false, 1.0, 0.0, 1.5e-3},
-      {1, 4, false, 3.0, 0.0, 2e-4},
+      {1, 4, true, 1.0, 2e-5},  {2, 4, true, 1.0, 5e-4}, {4, 4, true, 1.0, 5e-3},
+      {1, 2, true, 1.0, 2e-5},  {1, 8, true, 1.0, 2e-5}, {1, 4, false, 1.0, 1.5e-3},
+      {1, 4, false, 3.0, 2e-4},
   };
   for (const Reflection& r : cases) {
     ChainAndBar model = model_of(r.element_ratio, r.width, r.lagrange);
