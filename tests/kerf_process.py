@@ -106,11 +106,10 @@ def summary(folder):
     return json.loads((folder / "summary.json").read_text())
 
 
-def sockets_and_segments():
-    """Everything of kerf's that could outlive a process."""
-    left = {p.name for p in pathlib.Path("/dev/shm").glob("*kerf*")} if os.path.isdir("/dev/shm") else set()
-    for line in pathlib.Path("/proc/net/unix").read_text().splitlines():
-        if "kerf-" in line:
-            left.add(line.split()[-1])
-    left |= {p.name for p in pathlib.Path(tempfile.gettempdir()).glob("kerf-check-*")}
-    return left
+def left_by(pid):
+    """Names that could outlive the kerf of that pid: sockets and segments."""
+    lines = pathlib.Path("/proc/net/unix").read_text().splitlines()
+    names = [line.split()[-1] for line in lines]
+    if os.path.isdir("/dev/shm"):
+        names += [p.name for p in pathlib.Path("/dev/shm").iterdir()]
+    return [name for name in names if f"kerf-{pid}-" in name]

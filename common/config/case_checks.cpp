@@ -98,11 +98,12 @@ private:
                     "give exactly one pair: young_modulus with poisson_ratio, or C11 with C12.");
     } else if (has_stiffness) {
       const double C11 = material["C11"], C12 = material["C12"];
-      if (C12 >= C11 || 2.0 * C12 <= -C11) // shear and bulk stiffness of an isotropic solid
+      if (C12 >= C11 || (is_plane_ ? C12 : 2.0 * C12) <= -C11) // shear and bulk stiffness
         problems_.add(key + ".C12",
                       fmt::format("{}.C12 = {} with C11 = {} is not a stable material.", key,
                                   value_text(C12), value_text(C11)),
-                      "give C12 between -C11 / 2 and C11.");
+                      is_plane_ ? "give C12 between -C11 and C11."
+                                : "give C12 between -C11 / 2 and C11.");
     }
   }
 
@@ -197,7 +198,32 @@ private:
       if (!measure["coupling"].is_null())
         check_known(key + ".coupling", measure["coupling"], "coupling", couplings_);
       check_expectation(key + ".expect", measure["expect"]);
+      if (measure["kind"] == "reflected_energy" || measure["kind"] == "transmitted_energy")
+        check_wave_energy(key, measure);
     }
+  }
+
+  /// These two are taken from the last frame of a participant.
+  void check_wave_energy(const string& key, const json& measure) {
+    if (measure["participant"].is_null()) {
+      problems_.add(key, fmt::format("{}.participant is missing.", key),
+                    "name the participant whose energy is measured.");
+      return;
+    }
+    const auto kind_of = [&](const char* who) -> string {
+      const json& participants = settings_["participants"];
+      const auto found = participants.find(measure[who].get<string>());
+      return found == participants.end() ? "" : (*found)["kind"].get<string>();
+    };
+    if (!measure["reference"].is_null() &&
+        (kind_of("participant") == "fem" || kind_of("reference") == "fem"))
+      problems_.add(
+          key + ".reference",
+          fmt::format("{}.reference compares particles, but one of the two is a mesh.", key),
+          "name a dem participant with the same particles, or leave reference out.");
+    if (settings_["case"]["output"]["frames"] == 0)
+      problems_.add(key, fmt::format("{} needs a frame, but case.output.frames = 0.", key),
+                    "let case.output.frames be at least 1.");
   }
 
   void check_expectation(const string& key, const json& expect) {

@@ -78,6 +78,8 @@ private:
   void compute(Joint& joint);
   void enter_books();
   std::span<const std::byte> receive_frame(Member& member, FrameKind kind);
+  std::span<std::byte> force_frame_of(Member& member);
+  [[noreturn]] void gave_up(const Member& member, const char* expected, const TimeoutError& error);
   Wait patience(); // the hang limit, looking after everybody meanwhile
 
   // The end.

@@ -37,7 +37,7 @@ void Broker::cycle() {
     }
   for (Member& m : members_)
     if (m.channel) {
-      m.force_frame = m.channel->outgoing(patience());
+      m.force_frame = force_frame_of(m);
       m.layout.write_header(m.force_frame, FrameKind::interface_forces, step_);
     }
   for (Joint& joint : joints_) // the participants compute their own forces meanwhile
@@ -129,19 +129,36 @@ std::span<const std::byte> Broker::receive_frame(Member& m, FrameKind kind) {
     const auto frame = m.channel->receive(patience());
     check_frame(frame, kind, step_, m.layout);
     return frame;
-  } catch (const TimeoutError&) {
-    const double limit = setup_.settings.at("case").at("hang_limit");
-    throw RunError(
-        ErrorKind::failed, "",
-        fmt::format("participant \"{}\" (pid {}) was silent for {:g} s at step {} of {}; its {} "
-                    "was expected. Its log: {}. No checkpoint was written",
-                    m.name, m.pid, limit, step_, schedule_.steps,
-                    kind == FrameKind::motion ? "motion" : "own forces", log_of(m).string()));
+  } catch (const TimeoutError& error) {
+    gave_up(m, kind == FrameKind::motion ? "motion" : "own forces", error);
   } catch (const ProtocolError& error) {
     throw RunError(ErrorKind::failed, "",
                    fmt::format("participant \"{}\" (pid {}) broke the protocol at step {}: {}",
                                m.name, m.pid, step_, error.what()));
   }
+}
+
+std::span<std::byte> Broker::force_frame_of(Member& m) {
+  try {
+    return m.channel->outgoing(patience());
+  } catch (const TimeoutError& error) {
+    gave_up(m, "taking of the last forces", error);
+  }
+}
+
+void Broker::gave_up(const Member& m, const char* expected, const TimeoutError& error) {
+  // Perhaps it has died: its end or its last message says more, and may be on the way.
+  for (int k = 0; k < 20; ++k)
+    serve(std::chrono::milliseconds(10));
+  const double limit = setup_.settings.at("case").at("hang_limit");
+  const bool closed = dynamic_cast<const ClosedError*>(&error) != nullptr;
+  throw RunError(
+      ErrorKind::failed, "",
+      fmt::format("participant \"{}\" (pid {}) {} at step {} of {}; its {} was "
+                  "expected. Its log: {}. No checkpoint was written",
+                  m.name, m.pid,
+                  closed ? "closed its link" : fmt::format("was silent for {:g} s", limit), step_,
+                  schedule_.steps, expected, log_of(m).string()));
 }
 
 } // namespace kerf::coupler

@@ -17,6 +17,12 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// The other end will never answer: it has closed the link, as a transport with connections sees.
+class ClosedError : public TimeoutError {
+public:
+  using TimeoutError::TimeoutError;
+};
+
 /// How long to wait for a frame, and what to look after meanwhile.
 struct Wait {
   std::chrono::steady_clock::duration limit = std::chrono::seconds(30);

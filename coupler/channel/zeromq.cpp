@@ -131,7 +131,7 @@ private:
       try {
         if (!socket_.send(zmq::const_buffer(out_.message(), sizeof prefix + bytes),
                           zmq::send_flags::dontwait))
-          throw TimeoutError("the other end has closed the link");
+          throw ClosedError("the other end has closed the link");
         told_taken_ = prefix.taken;
         return;
       } catch (const zmq::error_t& error) {

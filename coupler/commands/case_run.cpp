@@ -7,15 +7,36 @@
 
 #include <csignal>
 #include <cstdio>
+#include <optional>
 
 namespace kerf::commands {
 
+namespace {
+
+/// The case of the options, with the transport written into it.
 CaseFile read_case(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.transport.empty())
     overrides.push_back("case.transport=" + options.transport);
   return CaseFile::read(options.case_file, overrides);
 }
+
+/// The error of a fault that a participant or the broker found, with its line in the case.
+ConfigError located(const CaseFile& case_file, const coupler::RunError& error) {
+  const std::string sentence = error.what();
+  const auto line_break = sentence.find('\n');
+  const std::string fix = line_break == std::string::npos
+                              ? "see configs/reference.toml for what is allowed"
+                              : sentence.substr(line_break + 1);
+  return case_file.error(error.key(), error.key() + ": " + sentence.substr(0, line_break) + ".",
+                         fix + ".");
+}
+
+void say(const std::string& sentence) {
+  fmt::print(stderr, "{}\n", sentence);
+}
+
+} // namespace
 
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
                              bool plan_only, decltype(coupler::RunSetup::progress) progress) {
@@ -39,30 +60,20 @@ nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::p
   }
 }
 
-int guarded(const std::function<int()>& body, const CaseFile*& case_file) {
-  const auto say = [](const std::string& sentence) {
-    fmt::print(stderr, "{}\n", sentence);
-    std::fflush(stderr);
-  };
+int with_case(const RunOptions& options, const std::function<int(const CaseFile&)>& body) {
+  std::optional<CaseFile> case_file;
   try {
-    return body();
+    case_file = read_case(options);
+    return body(*case_file);
   } catch (const ConfigError& error) {
     say(error.what());
     return exit_code::bad_input;
   } catch (const coupler::RunError& error) {
-    const std::string sentence = error.what();
-    if (error.kind() == coupler::ErrorKind::bad_input && case_file != nullptr) {
-      const auto line_break = sentence.find('\n');
-      const std::string fix = line_break == std::string::npos
-                                  ? "see configs/reference.toml for what is allowed"
-                                  : sentence.substr(line_break + 1);
-      say(case_file
-              ->error(error.key(), error.key() + ": " + sentence.substr(0, line_break) + ".",
-                      fix + ".")
-              .what());
+    if (error.kind() == coupler::ErrorKind::bad_input) {
+      say(located(*case_file, error).what());
       return exit_code::bad_input;
     }
-    say("kerf: " + sentence + ".");
+    say(fmt::format("kerf: {}.", error.what()));
     return exit_code::run_failed;
   } catch (const coupler::Interrupted& interrupted) {
     const bool by_user = interrupted.signal() == SIGINT;

@@ -10,17 +10,14 @@
 
 namespace kerf::commands {
 
-/// The case of the options, with the transport written into it.
-CaseFile read_case(const RunOptions& options);
-
 /// Runs a case with participants as child processes.
 /// @return what run.json keeps
 /// @throws as Broker::run()
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
                              bool plan_only, decltype(coupler::RunSetup::progress) progress);
 
-/// Runs a command body and turns its exceptions into one sentence on stderr and an exit code.
-/// @param after_interrupt  said after Ctrl-C or SIGTERM: what is left of the run
-int guarded(const std::function<int()>& body, const CaseFile*& case_file);
+/// Reads the case and does something with it; turns exceptions into one sentence on stderr and an
+/// exit code.
+int with_case(const RunOptions& options, const std::function<int(const CaseFile&)>& body);
 
 } // namespace kerf::commands

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <optional>
 
 namespace kerf::commands {
 namespace {
@@ -57,21 +56,14 @@ void print_plan(const nlohmann::json& record, const nlohmann::json& settings) {
 } // namespace
 
 int check(const RunOptions& options) {
-  std::optional<CaseFile> case_file;
-  const CaseFile* known = nullptr;
-  return guarded(
-      [&] {
-        case_file = read_case(options);
-        known = &*case_file;
-        const TemporaryFolder folder;
-        start_log(
-            {.name = "kerf", .file = folder.path() / "logs" / "kerf.log", .to_stderr = false});
-        const nlohmann::json record = run_processes(*case_file, folder.path(), true, {});
-        fmt::print("{} can be run:\n", options.case_file.string());
-        print_plan(record, case_file->settings());
-        return static_cast<int>(exit_code::done);
-      },
-      known);
+  return with_case(options, [&](const CaseFile& case_file) {
+    const TemporaryFolder folder;
+    start_log({.name = "kerf", .file = folder.path() / "logs" / "kerf.log", .to_stderr = false});
+    const nlohmann::json record = run_processes(case_file, folder.path(), true, {});
+    fmt::print("{} can be run:\n", options.case_file.string());
+    print_plan(record, case_file.settings());
+    return static_cast<int>(exit_code::done);
+  });
 }
 
 } // namespace kerf::commands

@@ -13,7 +13,6 @@
 
 #include <chrono>
 #include <fstream>
-#include <optional>
 #include <thread>
 
 namespace kerf::commands {
@@ -84,15 +83,8 @@ int run_case(const CaseFile& case_file, const RunOptions& options) {
 } // namespace
 
 int run(const RunOptions& options) {
-  std::optional<CaseFile> case_file;
-  const CaseFile* known = nullptr;
-  return guarded(
-      [&] {
-        case_file = read_case(options);
-        known = &*case_file;
-        return run_case(*case_file, options);
-      },
-      known);
+  return with_case(options,
+                   [&](const CaseFile& case_file) { return run_case(case_file, options); });
 }
 
 } // namespace kerf::commands

@@ -96,6 +96,17 @@ class BrokenCases(KerfTest):
     def test_a_coupling_to_an_unknown_participant_is_answered_with_the_nearest_one(self):
         self.assert_refused('between = ["rock", "far"]', 'between = ["rokc", "far"]', 20, "rokc", "rock")
 
+    def test_a_measure_that_cannot_be_taken_is_refused_before_the_run(self):
+        measure = '\n[[measures]]\nname = "reflected_energy"\n'
+        case = self.write_case(GOOD + measure)
+        result = self.kerf("check", case)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("measures[0].participant is missing", result.stderr)
+        case = self.write_case(GOOD + measure + 'participant = "far"\nreference = "rock"\n')
+        result = self.kerf("check", case)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("one of the two is a mesh", result.stderr)
+
     def test_a_run_of_a_broken_case_leaves_earlier_results_alone(self):
         case = self.write_case(GOOD)
         folder = self.run_case(case)

@@ -156,7 +156,7 @@ TEST(Lifeline, may_be_cut_during_the_handshake_or_while_others_finish) {
 TEST(Lifeline, is_not_needed_to_notice_that_the_broker_has_closed_the_connection) {
   auto broker = std::make_unique<MiniBroker>();
   auto reason = start(broker->invitation());
-  broker->shake_hands(one_coupling(), "shm", 10);
+  broker->shake_hands(one_coupling(), "loopback", 10);
   broker->receive(FrameKind::motion, 0);
   const auto start_time = Clock::now();
   broker.reset();
