@@ -33,6 +33,17 @@ template <int dim> inline Rot<dim> moment(const Vec<dim>& r, const Vec<dim>& f) 
     return r.cross(f);
 }
 
+/// A part of space; its edges belong to it.
+template <int dim> struct Box {
+  Vec<dim> lower, upper; // m
+
+  /// True inside and up to 1e-9 of the longest edge outside.
+  bool contains(const Vec<dim>& point) const {
+    const double slack = 1e-9 * (upper - lower).maxCoeff();
+    return ((point - lower).array() >= -slack).all() && ((upper - point).array() >= -slack).all();
+  }
+};
+
 /// Box that repeats itself along some axes; a length of zero means that the axis does not repeat.
 template <int dim> struct Period {
   Vec<dim> length = Vec<dim>::Zero(); // m

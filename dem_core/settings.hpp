@@ -37,17 +37,6 @@ struct Damping {
   double rotation = 0.0;    // alpha_r, share of the resultant moment
 };
 
-/// Part of space whose particles are meant; the edges belong to it.
-template <int dim> struct Box {
-  Vec<dim> lower, upper; // m
-
-  /// True inside and up to 1e-9 of the longest edge outside.
-  bool contains(const Vec<dim>& point) const {
-    const double slack = 1e-9 * (upper - lower).maxCoeff();
-    return ((point - lower).array() >= -slack).all() && ((upper - point).array() >= -slack).all();
-  }
-};
-
 enum class Motion {
   fixed,    // does not move
   velocity, // constant velocity

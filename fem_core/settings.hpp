@@ -11,16 +11,6 @@
 
 namespace kerf::fem {
 
-/// A region of the reference configuration, faces included with a slack of 1e-9 of its size.
-template <int dim> struct Box {
-  Vec<dim> lower, upper; // m
-
-  bool contains(const Vec<dim>& point) const {
-    const double slack = 1e-9 * (upper - lower).maxCoeff();
-    return ((point - lower).array() >= -slack).all() && ((upper - point).array() >= -slack).all();
-  }
-};
-
 /// How a prescribed displacement goes on in time; t = 0 is the start of the run.
 enum class Motion {
   fixed,    // 0

@@ -1,6 +1,6 @@
 #include "dem_core/program/dem_output.hpp"
 
-#include "dem_core/program/stopwatch.hpp"
+#include "common/stopwatch.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "dem_core/program/dem_participant.hpp"
 
+#include "common/stopwatch.hpp"
 #include "coupler/participant/run_engine.hpp"
 #include "dem_core/engine.hpp"
 #include "dem_core/program/dem_output.hpp"
 #include "dem_core/program/read_settings.hpp"
-#include "dem_core/program/stopwatch.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

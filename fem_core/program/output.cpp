@@ -1,30 +1,16 @@
 #include "fem_core/program/output.hpp"
 
+#include "common/stopwatch.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
 namespace kerf::fem {
 namespace {
-
-/// Adds the time that it lives to a sum, s.
-class Stopwatch {
-public:
-  explicit Stopwatch(double& sum) : sum_(sum) {}
-  ~Stopwatch() {
-    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 template <int dim> std::vector<Column> history_columns() {
   std::vector<Column> columns = {{"step", "1"},           {"time", "s"},

@@ -77,7 +77,7 @@ template <int dim> void shake(dem::Settings<dim>& settings, double size, unsigne
   const Vec<dim> reach = Vec<dim>::Constant(1e-3 * spacing);
   for (const Vec<dim>& x : settings.positions) {
     dem::InitialCondition<dim> condition;
-    condition.box = dem::Box<dim>{x - reach, x + reach};
+    condition.box = Box<dim>{x - reach, x + reach};
     for (int a = 0; a < dim; ++a)
       condition.velocity[a] = size * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0);
     settings.initial.push_back(condition);

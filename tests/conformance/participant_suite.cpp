@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 constexpr std::uint64_t steps = 20;
 constexpr double force_scale = 10.0; // N; strains stay far below one
 
-class EveryParticipant : public testing::TestWithParam<std::tuple<Solver, const char*>> {
+class EveryParticipant : public testing::TestWithParam<std::tuple<Solver, std::string>> {
 protected:
   const Solver& solver() const { return std::get<0>(GetParam()); }
   std::size_t dim() const { return static_cast<std::size_t>(solver().dimension); }
@@ -42,7 +42,7 @@ std::string name_of(const testing::TestParamInfo<EveryParticipant::ParamType>& w
 
 INSTANTIATE_TEST_SUITE_P(Participant, EveryParticipant,
                          testing::Combine(testing::Values(echo, dem, fem),
-                                          testing::Values("shm", "zmq")),
+                                          testing::Values<std::string>("shm", "zmq")),
                          name_of);
 
 /// Every n-th point.

@@ -105,7 +105,7 @@ TEST(Neighbours, that_come_to_touch_repel_each_other) {
   auto settings = cases::pair_model<2>({1.0, 0.0}, rock(2));
   settings.positions[1][0] = 1.5 * spacing;
   dem::InitialCondition<2> condition;
-  condition.box = dem::Box<2>{settings.positions[1], settings.positions[1]};
+  condition.box = Box<2>{settings.positions[1], settings.positions[1]};
   condition.velocity = {-1.0, 0.0};
   settings.initial = {condition};
   dem::Engine<2> engine(settings);

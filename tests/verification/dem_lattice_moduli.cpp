@@ -20,7 +20,7 @@ template <int dim> using Matrix = Eigen::Matrix<double, dim, dim>;
 /// contact's branch times force belongs to each of its particles. Pa (N/m in 2D over 1 m).
 template <int dim>
 Matrix<dim> stress(const dem::Engine<dim>& engine, const Matrix<dim>& strain,
-                   const dem::Box<dim>& inside, double volume) {
+                   const Box<dim>& inside, double volume) {
   auto particles = engine.particles();
   auto contacts = engine.contacts();
   for (std::size_t i = 0; i < particles.size(); ++i)
@@ -41,7 +41,7 @@ Matrix<dim> stress(const dem::Engine<dim>& engine, const Matrix<dim>& strain,
   return sum / (static_cast<double>(count) * volume);
 }
 
-template <int dim> dem::Box<dim> interior(const dem::Settings<dim>& settings) {
+template <int dim> Box<dim> interior(const dem::Settings<dim>& settings) {
   Vec<dim> lower = settings.positions.front(), upper = lower;
   for (const Vec<dim>& x : settings.positions) {
     lower = lower.cwiseMin(x);

@@ -15,7 +15,7 @@ template <int dim> dem::Settings<dim> parting_pair(double speed) {
   for (const int side : {0, 1}) {
     dem::InitialCondition<dim> condition;
     const Vec<dim> x = settings.positions[static_cast<std::size_t>(side)];
-    condition.box = dem::Box<dim>{x, x};
+    condition.box = Box<dim>{x, x};
     condition.velocity[0] = side == 0 ? -speed : speed;
     settings.initial.push_back(condition);
   }
@@ -60,7 +60,7 @@ template <int dim> void shear_vibrates_with_both_inertias(double factor) {
   for (const int side : {0, 1}) {
     dem::InitialCondition<dim> condition;
     const Vec<dim> x = settings.positions[static_cast<std::size_t>(side)];
-    condition.box = dem::Box<dim>{x, x};
+    condition.box = Box<dim>{x, x};
     condition.velocity[1] = (side == 0 ? -1.0 : 1.0) * speed * omega;
     settings.initial.push_back(condition);
   }

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace kerf::dem {
+namespace kerf {
 
 /// Adds the time of its own life to a sum, s.
 class Stopwatch {
@@ -20,4 +20,4 @@ private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-} // namespace kerf::dem
+} // namespace kerf
