@@ -151,9 +151,9 @@ struct Model {
         mesh);
     for (int side = 0; side < 2; ++side) {
       const coupler::Declaration& body = side == 0 ? particles : mesh;
-      const coupler::Interface interface {
-        .coupling = "joint", .points = coupling->side(side).points
-      };
+      coupler::Interface interface;
+      interface.coupling = "joint";
+      interface.points = coupling->side(side).points;
       layout[side] = FrameLayout(3, body.ids, std::array{interface});
     }
     const std::size_t np = coupling->side(0).points.size(), nn = coupling->side(1).points.size();
