@@ -15,7 +15,7 @@ template <class Term> auto ordered_sum(std::size_t count, Term term) -> decltype
   constexpr std::size_t block = 1024;
   const auto blocks = static_cast<std::int64_t>((count + block - 1) / block);
   std::vector<Value> partial(static_cast<std::size_t>(blocks), Value{});
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (blocks > 1)
   for (std::int64_t b = 0; b < blocks; ++b) {
     Value sum{};
     const std::size_t end = std::min(count, static_cast<std::size_t>(b + 1) * block);

@@ -79,6 +79,7 @@ private:
   void enter_books();
   std::span<const std::byte> receive_frame(Member& member, FrameKind kind);
   std::span<std::byte> force_frame_of(Member& member);
+  void send_forces(Member& member);
   [[noreturn]] void gave_up(const Member& member, const char* expected, const TimeoutError& error);
   Wait patience(); // the hang limit, looking after everybody meanwhile
 

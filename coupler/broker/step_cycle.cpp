@@ -55,7 +55,7 @@ void Broker::cycle() {
       compute(joint);
   for (Member& m : members_)
     if (m.channel)
-      m.channel->send(m.layout.bytes(FrameKind::interface_forces));
+      send_forces(m);
   enter_books();
   // Messages and children are looked after ten times a second, whatever a step takes.
   if (Clock::now() - last_service_ > std::chrono::milliseconds(100))
@@ -143,6 +143,14 @@ std::span<std::byte> Broker::force_frame_of(Member& m) {
     return m.channel->outgoing(patience());
   } catch (const TimeoutError& error) {
     gave_up(m, "taking of the last forces", error);
+  }
+}
+
+void Broker::send_forces(Member& m) {
+  try {
+    m.channel->send(m.layout.bytes(FrameKind::interface_forces));
+  } catch (const TimeoutError& error) {
+    gave_up(m, "taking of the forces", error);
   }
 }
 

@@ -45,6 +45,10 @@ Message ControlLine::await(const char* type, Clock::duration limit) {
   }
 }
 
+void ControlLine::await_stop() {
+  throw_unexpected(await(message::stop, std::chrono::seconds(1)));
+}
+
 void ControlLine::attend(const Progress& progress) {
   const bool gone = broker_is_gone();
   if (const auto message = client_.receive(no_time))

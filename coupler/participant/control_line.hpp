@@ -24,6 +24,9 @@ public:
   /// Waits for a message of one type.
   Message await(const char* type, Clock::duration limit);
 
+  /// When the link of the frames has closed: the broker's reason follows, or it is gone.
+  [[noreturn]] void await_stop();
+
   /// Reads what is there and reports the progress, unless it did so within the last 0.1 s.
   void attend(const Progress& progress);
   /// The same, cheap enough for every step.

@@ -202,7 +202,11 @@ std::span<double> Participant::State::outgoing(FrameKind kind, std::size_t inter
 void Participant::State::publish(FrameKind kind) {
   const auto start = Clock::now();
   layout.write_header(channel->outgoing(wait), kind, step);
-  channel->send(layout.bytes(kind));
+  try {
+    channel->send(layout.bytes(kind));
+  } catch (const ClosedError&) {
+    control.await_stop();
+  }
   exchange += Clock::now() - start;
 }
 

@@ -13,4 +13,4 @@ target_link_libraries(channel_tests PRIVATE kerf::participant cppzmq fmt::fmt
                                             Threads::Threads kerf::warnings)
 target_compile_definitions(channel_tests PRIVATE KERF_ECHO_PROGRAM="$<TARGET_FILE:kerf_echo>")
 add_dependencies(channel_tests kerf_echo)
-gtest_discover_tests(channel_tests PROPERTIES TIMEOUT 120 LABELS "channel;conformance")
+gtest_discover_tests(channel_tests PROPERTIES TIMEOUT 300 LABELS "channel;conformance")

@@ -68,8 +68,8 @@ TEST(SharedMemory, carries_frames_between_processes) {
     ChannelAddress address = segment.address;
     if (!inherited)
       address.descriptor = -1; // opens /proc/<pid>/fd/<n>
-    const pid_t child = fork_echo(address, 10'000);
-    exchange(*channel, 10'000);
+    const pid_t child = fork_echo(address, 2000);
+    exchange(*channel, 2000);
     int status = 0;
     waitpid(child, &status, 0);
     EXPECT_EQ(status, 0);

@@ -2,7 +2,7 @@
 add_executable(coupled_tests verification/coupled_chain.cpp)
 target_link_libraries(coupled_tests PRIVATE kerf::broker kerf::dem kerf::fem kerf::warnings
                                             GTest::gtest_main)
-gtest_discover_tests(coupled_tests)
+gtest_discover_tests(coupled_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
 
 add_executable(loopback_tests coupled/loopback.cpp)
 target_link_libraries(loopback_tests PRIVATE kerf::commands kerf::dem_participant
