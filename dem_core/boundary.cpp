@@ -35,17 +35,23 @@ Vec<dim> step_velocity(const Prescription<dim>& p, std::uint64_t step, double dt
 template <int dim>
 Boundary<dim>::Boundary(std::vector<Prescription<dim>> prescriptions,
                         std::span<const Vec<dim>> reference)
-    : prescriptions_(std::move(prescriptions)), selected_(prescriptions_.size()),
-      components_(reference.size(), 0), velocity_(reference.size(), Vec<dim>::Zero()) {
+    : prescriptions_(std::move(prescriptions)), selected_(prescriptions_.size()) {
+  if (prescriptions_.empty())
+    return;
+  std::vector<std::uint8_t> components(reference.size(), 0);
   for (std::size_t k = 0; k < prescriptions_.size(); ++k)
     for (std::uint32_t i = 0; i < reference.size(); ++i)
       if (prescriptions_[k].box.contains(reference[i])) {
         selected_[k].push_back(i);
-        components_[i] = static_cast<std::uint8_t>(components_[i] | prescriptions_[k].components);
+        components[i] = static_cast<std::uint8_t>(components[i] | prescriptions_[k].components);
       }
-  for (std::uint32_t i = 0; i < components_.size(); ++i)
-    if (components_[i] != 0)
+  entry_.assign(reference.size(), 0);
+  for (std::uint32_t i = 0; i < components.size(); ++i)
+    if (components[i] != 0) {
       particles_.push_back(i);
+      motion_.emplace_back().components = components[i];
+      entry_[i] = static_cast<std::uint32_t>(motion_.size());
+    }
 }
 
 template <int dim> void Boundary<dim>::advance(std::uint64_t step, double time_step) {
@@ -54,7 +60,7 @@ template <int dim> void Boundary<dim>::advance(std::uint64_t step, double time_s
     for (const std::uint32_t i : selected_[k])
       for (int a = 0; a < dim; ++a)
         if ((prescriptions_[k].components >> a & 1u) != 0)
-          velocity_[i][a] = v[a];
+          of(i)->velocity[a] = v[a];
   }
 }
 

@@ -3,11 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace kerf::dem {
 
 namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// A contact to be, and the one of the old list that it continues.
+struct Entry {
+  Pair pair;
+  std::uint32_t old = none;
+};
 
 template <int dim>
 std::vector<Pair> pairs_within(const Particles<dim>& particles, double reach,
@@ -18,69 +28,102 @@ std::vector<Pair> pairs_within(const Particles<dim>& particles, double reach,
   return find_pairs<dim>(position, particles.radius, reach, period);
 }
 
-/// Appends a pair without bond or history; it is free of stress when the surfaces just touch.
+template <int dim> void resize(Contacts<dim>& c, std::size_t count) {
+  c.first.resize(count);
+  c.second.resize(count);
+  c.reference_branch.resize(count);
+  c.rest_length.resize(count);
+  c.share.resize(count);
+  c.normal_stiffness.resize(count);
+  c.tangential_stiffness.resize(count);
+  c.tensile_strength.resize(count);
+  c.shear_strength.resize(count);
+  c.bonded.resize(count);
+  c.bonded_at_start.resize(count);
+  c.normal_force.resize(count);
+  c.shear_force.resize(count);
+}
+
+/// A pair without bond or history; it is free of stress when the surfaces just touch.
 template <int dim>
-void add_pair(Contacts<dim>& c, Pair pair, const Particles<dim>& p, const Material& material,
-              const Period<dim>& period) {
+void set_new(Contacts<dim>& c, std::size_t k, Pair pair, const Particles<dim>& p,
+             const Material& material, const Period<dim>& period) {
   const auto [i, j] = pair;
   const Vec<dim> relative = p.displacement[j] - p.displacement[i];
-  const Vec<dim> branch = period.shortest(p.reference[j] - p.reference[i] + relative) - relative;
-  c.first.push_back(i);
-  c.second.push_back(j);
-  c.reference_branch.push_back(branch);
-  c.reference_length.push_back(branch.norm());
-  c.rest_length.push_back(p.radius[i] + p.radius[j]);
-  c.share.push_back(p.radius[i] / (p.radius[i] + p.radius[j]));
-  c.normal_stiffness.push_back(material.normal_stiffness);
-  c.tangential_stiffness.push_back(material.tangential_stiffness);
-  c.tensile_strength.push_back(material.tensile_strength);
-  c.shear_strength.push_back(material.shear_strength);
-  c.bonded.push_back(0);
-  c.bonded_at_start.push_back(0);
-  c.normal_force.push_back(0.0);
-  c.shear_force.push_back(Vec<dim>::Zero());
-  c.friction_loss.push_back(0.0);
-  c.fracture_loss.push_back(0.0);
+  c.first[k] = i;
+  c.second[k] = j;
+  c.reference_branch.set(k, period.shortest(p.reference[j] - p.reference[i] + relative) - relative);
+  c.rest_length[k] = p.radius[i] + p.radius[j];
+  c.share[k] = p.radius[i] / (p.radius[i] + p.radius[j]);
+  c.normal_stiffness[k] = material.normal_stiffness;
+  c.tangential_stiffness[k] = material.tangential_stiffness;
+  c.tensile_strength[k] = material.tensile_strength;
+  c.shear_strength[k] = material.shear_strength;
+  c.bonded[k] = 0;
+  c.bonded_at_start[k] = 0;
+  c.normal_force[k] = 0.0;
+  c.shear_force.set(k, Rot<dim>::Zero());
 }
 
-/// Appends contact k of another list with all its history.
-template <int dim> void add_copy(Contacts<dim>& c, const Contacts<dim>& from, std::size_t k) {
-  c.first.push_back(from.first[k]);
-  c.second.push_back(from.second[k]);
-  c.reference_branch.push_back(from.reference_branch[k]);
-  c.reference_length.push_back(from.reference_length[k]);
-  c.rest_length.push_back(from.rest_length[k]);
-  c.share.push_back(from.share[k]);
-  c.normal_stiffness.push_back(from.normal_stiffness[k]);
-  c.tangential_stiffness.push_back(from.tangential_stiffness[k]);
-  c.tensile_strength.push_back(from.tensile_strength[k]);
-  c.shear_strength.push_back(from.shear_strength[k]);
-  c.bonded.push_back(from.bonded[k]);
-  c.bonded_at_start.push_back(from.bonded_at_start[k]);
-  c.normal_force.push_back(from.normal_force[k]);
-  c.shear_force.push_back(from.shear_force[k]);
-  c.friction_loss.push_back(from.friction_loss[k]);
-  c.fracture_loss.push_back(from.fracture_loss[k]);
+/// Contact `old` of another list with all its history.
+template <int dim>
+void set_copy(Contacts<dim>& c, std::size_t k, const Contacts<dim>& from, std::size_t old) {
+  c.first[k] = from.first[old];
+  c.second[k] = from.second[old];
+  c.reference_branch.set(k, from.reference_branch[old]);
+  c.rest_length[k] = from.rest_length[old];
+  c.share[k] = from.share[old];
+  c.normal_stiffness[k] = from.normal_stiffness[old];
+  c.tangential_stiffness[k] = from.tangential_stiffness[old];
+  c.tensile_strength[k] = from.tensile_strength[old];
+  c.shear_strength[k] = from.shear_strength[old];
+  c.bonded[k] = from.bonded[old];
+  c.bonded_at_start[k] = from.bonded_at_start[old];
+  c.normal_force[k] = from.normal_force[old];
+  c.shear_force.set(k, from.shear_force[old]);
 }
 
-/// Fills what follows from the list of pairs.
-template <int dim> void complete(Contacts<dim>& c, const Particles<dim>& particles) {
-  c.force.assign(c.size(), Vec<dim>::Zero());
-  c.couple.assign(c.size(), Rot<dim>::Zero());
-  c.offset.assign(particles.size() + 1, 0);
+/// Fills what follows from the pairs: which block owns what, and where loads wait.
+template <int dim> void arrange(Contacts<dim>& c, std::size_t particles) {
+  const auto block_of = [](std::uint32_t i) { return i / particles_per_block; };
+  const std::size_t blocks = (particles + particles_per_block - 1) / particles_per_block;
+  c.block_offset.assign(blocks + 1, 0);
+  c.waiting_offset.assign(blocks + 1, 0);
+  c.incoming_offset.assign(blocks + 1, 0);
+  c.losses.resize(blocks);
+  c.target.resize(c.size());
+  auto row = static_cast<std::uint32_t>(particles);
   for (std::size_t k = 0; k < c.size(); ++k) {
-    ++c.offset[c.first[k] + 1];
-    ++c.offset[c.second[k] + 1];
+    const std::uint32_t own = block_of(c.first[k]), other = block_of(c.second[k]);
+    ++c.block_offset[own + 1];
+    c.target[k] = c.second[k];
+    if (other != own) {
+      c.target[k] = row++;
+      ++c.waiting_offset[own + 1];
+      ++c.incoming_offset[other + 1];
+    }
   }
-  for (std::size_t i = 0; i < particles.size(); ++i)
-    c.offset[i + 1] += c.offset[i];
-  c.incidence.resize(2 * c.size());
-  std::vector<std::uint32_t> next(c.offset.begin(), c.offset.end() - 1);
-  for (std::uint32_t k = 0; k < c.size(); ++k) {
-    c.incidence[next[c.first[k]]++] = 2 * k;
-    c.incidence[next[c.second[k]]++] = 2 * k + 1;
+  c.waiting_offset[0] = static_cast<std::uint32_t>(particles);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    c.block_offset[b + 1] += c.block_offset[b];
+    c.waiting_offset[b + 1] += c.waiting_offset[b];
+    c.incoming_offset[b + 1] += c.incoming_offset[b];
   }
-  blend(c, particles);
+  c.incoming_row.resize(c.incoming_offset[blocks]);
+  c.incoming_second.resize(c.incoming_offset[blocks]);
+  std::vector<std::uint32_t> next(c.incoming_offset.begin(), c.incoming_offset.end() - 1);
+  for (std::size_t k = 0; k < c.size(); ++k)
+    if (c.target[k] != c.second[k]) {
+      const std::uint32_t at = next[block_of(c.second[k])]++;
+      c.incoming_row[at] = c.target[k];
+      c.incoming_second[at] = c.second[k];
+    }
+}
+
+/// The contact weight between two particles.
+template <int dim> double weight_of(const Particles<dim>& p, std::uint32_t i, std::uint32_t j) {
+  return bounded_share((p.radius[j] * p.weight[i] + p.radius[i] * p.weight[j]) /
+                       (p.radius[i] + p.radius[j]));
 }
 
 } // namespace
@@ -89,13 +132,23 @@ template <int dim> std::size_t Contacts<dim>::bonds() const noexcept {
   return static_cast<std::size_t>(std::count(bonded.begin(), bonded.end(), std::uint8_t{1}));
 }
 
+template <int dim> double Contacts<dim>::memory() const {
+  constexpr std::size_t numbers = dim + 7 + rotations<dim>;
+  return static_cast<double>(size() * (numbers * sizeof(double) + 3 * sizeof(std::uint32_t) + 2) +
+                             weight.size() * sizeof(double) +
+                             waiting_rows() * 2 * sizeof(std::uint32_t));
+}
+
 template <int dim>
 Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
                             double gap_tolerance, double skin, const Period<dim>& period) {
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
   const double reach = std::max(skin, gap_tolerance * 2.0 * largest);
   Contacts<dim> c;
-  for (const Pair pair : pairs_within(particles, reach, period)) {
+  const std::vector<Pair> pairs = pairs_within(particles, reach, period);
+  resize(c, pairs.size());
+  std::size_t count = 0;
+  for (const Pair pair : pairs) {
     const auto [i, j] = pair;
     const double contact_distance = particles.radius[i] + particles.radius[j];
     const double distance = period.shortest(particles.reference[j] - particles.reference[i]).norm();
@@ -104,13 +157,15 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
     const bool bonded = distance - contact_distance <= gap_tolerance * contact_distance;
     if (!bonded && distance - contact_distance > skin)
       continue;
-    add_pair(c, pair, particles, material, period);
+    set_new(c, count, pair, particles, material, period);
     if (bonded) {
-      c.bonded.back() = c.bonded_at_start.back() = 1;
-      c.rest_length.back() = c.reference_length.back();
+      c.bonded[count] = c.bonded_at_start[count] = 1;
+      c.rest_length[count] = c.reference_branch[count].norm();
     }
+    ++count;
   }
-  complete(c, particles);
+  resize(c, count);
+  arrange(c, particles.size());
   return c;
 }
 
@@ -118,35 +173,82 @@ template <int dim>
 void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
                     const Material& material, double skin, const Period<dim>& period) {
   const std::vector<Pair> pairs = pairs_within(particles, skin, period);
-  Contacts<dim> renewed;
-  renewed.lost_friction = contacts.lost_friction;
+  std::vector<Entry> entries;
+  entries.reserve(std::max(pairs.size(), contacts.size()));
   auto pair = pairs.begin();
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
+  for (std::uint32_t k = 0; k < contacts.size(); ++k) {
     const Pair old{contacts.first[k], contacts.second[k]};
     for (; pair != pairs.end() && *pair < old; ++pair)
-      add_pair(renewed, *pair, particles, material, period);
+      entries.push_back({*pair});
     const bool is_near = pair != pairs.end() && *pair == old;
     if (is_near)
       ++pair;
     if (is_near || contacts.bonded_at_start[k])
-      add_copy(renewed, contacts, k);
-    else
-      renewed.lost_friction += contacts.friction_loss[k];
+      entries.push_back({old, k});
   }
   for (; pair != pairs.end(); ++pair)
-    add_pair(renewed, *pair, particles, material, period);
-  complete(renewed, particles);
+    entries.push_back({*pair});
+
+  Contacts<dim> renewed;
+  resize(renewed, entries.size());
+  const auto count = static_cast<std::int64_t>(entries.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t k = 0; k < count; ++k)
+    if (entries[k].old == none)
+      set_new(renewed, k, entries[k].pair, particles, material, period);
+    else
+      set_copy(renewed, k, contacts, entries[k].old);
+  renewed.losses = contacts.losses;
+  arrange(renewed, particles.size());
+  if (!contacts.weight.empty())
+    blend(renewed, particles);
   contacts = std::move(renewed);
 }
 
 template <int dim> void blend(Contacts<dim>& contacts, const Particles<dim>& particles) {
   contacts.weight.resize(contacts.size());
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const std::uint32_t i = contacts.first[k], j = contacts.second[k];
-    const double r_i = particles.radius[i], r_j = particles.radius[j];
-    contacts.weight[k] =
-        bounded_share((r_j * particles.weight[i] + r_i * particles.weight[j]) / (r_i + r_j));
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    contacts.weight[k] = weight_of(particles, contacts.first[k], contacts.second[k]);
+}
+
+template <int dim> Incidence incidence(const Contacts<dim>& c, std::size_t particles) {
+  Incidence result;
+  result.offset.assign(particles + 1, 0);
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    ++result.offset[c.first[k] + 1];
+    ++result.offset[c.second[k] + 1];
   }
+  for (std::size_t i = 0; i < particles; ++i)
+    result.offset[i + 1] += result.offset[i];
+  result.entry.resize(2 * c.size());
+  std::vector<std::uint32_t> next(result.offset.begin(), result.offset.end() - 1);
+  for (std::uint32_t k = 0; k < c.size(); ++k) {
+    result.entry[next[c.first[k]]++] = 2 * k;
+    result.entry[next[c.second[k]]++] = 2 * k + 1;
+  }
+  return result;
+}
+
+template <int dim>
+Span<dim> span_of(const Contacts<dim>& c, const Particles<dim>& particles, std::size_t k) {
+  Span<dim> span;
+  const Vec<dim> B = c.reference_branch[k];
+  const Vec<dim> relative =
+      particles.displacement[c.second[k]] - particles.displacement[c.first[k]];
+  span.branch = B + relative;
+  span.length = span.branch.norm();
+  // |b| - |B| is computed from the displacement, so that it keeps its digits when it is small.
+  const double stretch = relative.dot(2.0 * B + relative) / (span.length + B.norm());
+  span.opening = stretch + (B.norm() - c.rest_length[k]);
+  return span;
+}
+
+template <int dim>
+Vec<dim> shear_force(const Contacts<dim>& c, const Particles<dim>& particles, std::size_t k) {
+  if constexpr (dim == 2)
+    return spin<2>(c.shear_force[k], span_of(c, particles, k).normal());
+  else
+    return c.shear_force[k];
 }
 
 #define KERF_INSTANTIATE(dim)                                                                      \
@@ -155,7 +257,10 @@ template <int dim> void blend(Contacts<dim>& contacts, const Particles<dim>& par
                                             double, const Period<dim>&);                           \
   template void renew_contacts<dim>(Contacts<dim>&, const Particles<dim>&, const Material&,        \
                                     double, const Period<dim>&);                                   \
-  template void blend<dim>(Contacts<dim>&, const Particles<dim>&);
+  template void blend<dim>(Contacts<dim>&, const Particles<dim>&);                                 \
+  template Incidence incidence<dim>(const Contacts<dim>&, std::size_t);                            \
+  template Span<dim> span_of<dim>(const Contacts<dim>&, const Particles<dim>&, std::size_t);       \
+  template Vec<dim> shear_force<dim>(const Contacts<dim>&, const Particles<dim>&, std::size_t);
 KERF_INSTANTIATE(2)
 KERF_INSTANTIATE(3)
 

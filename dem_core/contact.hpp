@@ -5,44 +5,76 @@
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace kerf::dem {
 
-/// Pairs of particles that touch or soon may, ascending by (first, second). All arrays have one
-/// entry a contact. The normal points from `first` to `second`; tension is positive.
-template <int dim> struct Contacts {
-  std::vector<std::uint32_t> first, second;
-  std::vector<Vec<dim>> reference_branch; // x_j - x_i of this image, less u_j - u_i, m
-  std::vector<double> reference_length;   // of reference_branch, m
-  std::vector<double> rest_length;        // centre distance without normal force, m
-  std::vector<double> share;              // r_i / (r_i + r_j), part of the branch that is arm of i
+/// Vectors stored component by component, as the kernels read them.
+template <int size> struct Columns {
+  std::array<std::vector<double>, size> of;
 
+  void resize(std::size_t count) {
+    for (std::vector<double>& column : of)
+      column.resize(count);
+  }
+  Eigen::Matrix<double, size, 1> operator[](std::size_t k) const {
+    Eigen::Matrix<double, size, 1> vector;
+    for (std::size_t a = 0; a < size; ++a)
+      vector[static_cast<Eigen::Index>(a)] = of[a][k];
+    return vector;
+  }
+  void set(std::size_t k, const Eigen::Matrix<double, size, 1>& vector) {
+    for (std::size_t a = 0; a < size; ++a)
+      of[a][k] = vector[static_cast<Eigen::Index>(a)];
+  }
+};
+
+/// Particles are worked on in blocks of a fixed size, never of the number of threads, so that sums
+/// have the same bits for any number of them.
+inline constexpr std::uint32_t particles_per_block = 1024;
+
+/// What contacts have dissipated so far, with weight, J.
+struct ContactLosses {
+  double friction = 0.0, fracture = 0.0;
+};
+
+/// Pairs of particles that touch or soon may, ascending by (first, second). The normal points from
+/// `first` to `second`; tension is positive.
+template <int dim> struct Contacts {
+  // One entry a contact.
+  std::vector<std::uint32_t> first, second;
+  Columns<dim> reference_branch;   // x_j - x_i of this image, less u_j - u_i, m
+  std::vector<double> rest_length; // centre distance without normal force, m
+  std::vector<double> share;       // r_i / (r_i + r_j), part of the branch that is arm of i
   std::vector<double> normal_stiffness, tangential_stiffness; // k_n, k_t, N/m
   std::vector<double> tensile_strength, shear_strength;       // R_n, R_t, N
-  std::vector<double> weight;                                 // w_c in the blended virtual work
+  std::vector<double> weight;                                 // w_c; empty: one everywhere
+  std::vector<std::uint8_t> bonded;                           // holds tension
+  std::vector<std::uint8_t> bonded_at_start;                  // stays in the list for ever
+  std::vector<double> normal_force;                           // F_n, without weight, N
+  /// F_T on the first, without weight, N; in 2D along the normal turned by +90 degrees.
+  Columns<rotations<dim>> shear_force;
 
-  std::vector<std::uint8_t> bonded;          // holds tension
-  std::vector<std::uint8_t> bonded_at_start; // stays in the list for ever
-  std::vector<double> normal_force;          // F_n, without weight, N
-  std::vector<Vec<dim>> shear_force;         // F_T on the first, without weight, N
-  std::vector<double> friction_loss;         // dissipated so far, with weight, J
-  std::vector<double> fracture_loss;         // dissipated so far, with weight, J
+  // A block of particles owns the contacts of which they are the first. What a contact gives to a
+  // particle of another block waits in a row behind those of the particles: block by block nobody
+  // writes where another one does, and the rows are added in the order of the contacts.
+  std::vector<std::uint32_t> block_offset;    // [blocks + 1] contacts of each block
+  std::vector<std::uint32_t> target;          // [contacts] row of the loads of the second
+  std::vector<std::uint32_t> waiting_offset;  // [blocks + 1] waiting rows that each block writes
+  std::vector<std::uint32_t> incoming_offset; // [blocks + 1] of what each block receives:
+  std::vector<std::uint32_t> incoming_row;    // the row that waits
+  std::vector<std::uint32_t> incoming_second; // the particle it is for
 
-  // Results of the last update, with weight.
-  std::vector<Vec<dim>> force;  // on the first; the second gets the opposite, N
-  std::vector<Rot<dim>> couple; // branch x force: share on the first, the rest on the second, N m
-
-  // Contacts of particle i: entries offset[i] to offset[i + 1] of incidence, each 2 k for the
-  // first and 2 k + 1 for the second particle of contact k, ascending.
-  std::vector<std::uint32_t> offset, incidence;
-
-  double lost_friction = 0.0; // friction_loss of the contacts that have left the list, J
+  std::vector<ContactLosses> losses; // [blocks]
 
   std::size_t size() const noexcept { return first.size(); }
+  std::size_t blocks() const noexcept { return block_offset.size() - 1; }
+  std::size_t waiting_rows() const noexcept { return incoming_row.size(); }
   std::size_t bonds() const noexcept; // that hold now
+  double memory() const;              // bytes
 
   /// A contact carries force when it is bonded or pressed together.
   bool carries(std::size_t k, double opening) const noexcept { return bonded[k] || opening < 0.0; }
@@ -65,27 +97,34 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
 /// contact, bounded there. One value for both sides keeps the pair of forces opposite.
 template <int dim> void blend(Contacts<dim>& contacts, const Particles<dim>& particles);
 
-/// Normal opening u_n of contact k with current branch b and relative displacement b - B, m.
-/// |b| - |B| is computed from the displacement, so that it keeps its digits when it is small.
+/// The contacts of every particle: those of particle i are entries offset[i] to offset[i + 1], each
+/// 2 k for the first and 2 k + 1 for the second particle of contact k, ascending.
+struct Incidence {
+  std::vector<std::uint32_t> offset, entry;
+};
+template <int dim> Incidence incidence(const Contacts<dim>& contacts, std::size_t particles);
+
+/// Where the two particles of a contact are to each other.
+template <int dim> struct Span {
+  Vec<dim> branch;      // from the first to the second centre, m
+  double length = 0.0;  // of the branch, m
+  double opening = 0.0; // u_n, > 0 is a gap, m
+
+  Vec<dim> normal() const { return branch / length; }
+};
 template <int dim>
-double opening(const Contacts<dim>& c, std::size_t k, const Vec<dim>& relative, double length) {
-  const Vec<dim>& B = c.reference_branch[k];
-  const double stretch =
-      relative.dot(2.0 * B + relative) / (length + c.reference_length[k]); // |b| - |B|
-  return stretch + (c.reference_length[k] - c.rest_length[k]);
-}
+Span<dim> span_of(const Contacts<dim>& contacts, const Particles<dim>& particles, std::size_t k);
 
-/// Turns a vector that is orthogonal to the unit vector `from` by the shortest rotation that
-/// brings `from` to `to`. It keeps its length and ends orthogonal to `to`.
-template <int dim> Vec<dim> turn(const Vec<dim>& vector, const Vec<dim>& from, const Vec<dim>& to) {
-  return vector - (vector.dot(to) / (1.0 + from.dot(to))) * (from + to);
-}
+/// F_T on the first particle as a vector, without weight, N; at the positions of its update.
+template <int dim>
+Vec<dim> shear_force(const Contacts<dim>& contacts, const Particles<dim>& particles, std::size_t k);
 
-/// Turns a vector that is orthogonal to the unit vector `axis` about it, by 2 atan(angle / 2): the
-/// angle up to its third power, at the price of no trigonometry, and with the length kept.
-inline Vec<3> twist(const Vec<3>& vector, const Vec<3>& axis, double angle) {
-  const double t = 0.5 * angle;
-  return ((1.0 - t * t) * vector + 2.0 * t * axis.cross(vector)) / (1.0 + t * t);
+/// Force on the first particle, F_n and F_T, without weight, N; eq. 11.
+template <int dim>
+Vec<dim> contact_force(const Contacts<dim>& contacts, const Particles<dim>& particles,
+                       std::size_t k) {
+  return contacts.normal_force[k] * span_of(contacts, particles, k).normal() +
+         shear_force(contacts, particles, k);
 }
 
 } // namespace kerf::dem

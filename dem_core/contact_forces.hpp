@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem_core/contact.hpp"
+#include "dem_core/contact_view.hpp"
 
 #include <span>
 #include <vector>
@@ -16,16 +17,28 @@ template <int dim> struct Increment {
   double scale = 1.0;
 };
 
-/// Forces on every particle.
-template <int dim> struct Loads {
-  std::vector<Vec<dim>> force;           // own resultant: contacts and damping, N
-  std::vector<Rot<dim>> moment;          // own resultant, N m
-  std::vector<Vec<dim>> damping_force;   // its part that is damping, N; empty without damping
-  std::vector<Rot<dim>> damping_moment;  // N m; empty without damping
-  std::vector<Vec<dim>> interface_force; // from outside, N
+/// Force in N and moment in N m on a particle: one cache line, or half of one in 2D.
+template <int dim> struct alignas(dim == 2 ? 32 : 64) Load {
+  Vec<dim> force = Vec<dim>::Zero();
+  Rot<dim> moment = Rot<dim>::Zero();
 };
 
-/// Brings every contact to the current positions and writes its force and couple.
+/// Loads on every particle.
+template <int dim> struct Loads {
+  std::vector<Load<dim>> own;            // [n] contacts and damping; behind them rows that wait
+  std::vector<Load<dim>> damping;        // [n] the part of own that is damping; empty without it
+  std::vector<Vec<dim>> interface_force; // [n] from outside, N; empty until there is one
+};
+
+/// A bond that was lost.
+struct Break {
+  std::uint32_t contact = 0;
+  BreakMode mode = BreakMode::tension;
+  double energy = 0.0; // that it had stored, J
+};
+
+/// Brings every contact to the current positions and puts what it does to the particles in
+/// loads.own, each particle summed in the same order for any number of threads.
 ///
 /// Normal force F_n = k_n u_n (Rojek (2008) eq. 12). The tangential force is carried along with
 /// the contact and grows by k_t times the tangential displacement of the points of contact during
@@ -34,11 +47,10 @@ template <int dim> struct Loads {
 /// Coulomb friction |F_T| <= mu |F_n| remain. The loss of energy of a step is the mean force times
 /// the slip that is not elastic, which is exact for the trapezoidal work of the scheme.
 /// @pre no two centres of a pair coincide
+/// @return the bonds that broke, ascending
 template <int dim>
-void update_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
-                     const Increment<dim>& increment, ShearIncrement rule, double friction);
-
-/// Sums forces and moments of the contacts on every particle, in the order of the contacts.
-template <int dim> void gather_contacts(const Contacts<dim>& contacts, Loads<dim>& loads);
+std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particles<dim>& particles,
+                                          const Increment<dim>& increment, ShearIncrement rule,
+                                          double friction, Loads<dim>& loads);
 
 } // namespace kerf::dem

@@ -6,17 +6,18 @@ template <int dim>
 void add_damping(const Damping& damping, const Particles<dim>& particles, Loads<dim>& loads) {
   if (damping.translation == 0.0 && damping.rotation == 0.0)
     return;
-  loads.damping_force.resize(particles.size());
-  loads.damping_moment.resize(particles.size());
+  loads.damping.resize(particles.size());
   const auto count = static_cast<std::int64_t>(particles.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > particles_per_block)
   for (std::int64_t i = 0; i < count; ++i) {
-    loads.damping_force[i] = damping_force(damping.kind, damping.translation, loads.force[i],
-                                           particles.velocity[i]); // eq. 18
-    loads.damping_moment[i] = damping_force(damping.kind, damping.rotation, loads.moment[i],
-                                            particles.angular_velocity[i]); // eq. 19
-    loads.force[i] += loads.damping_force[i];
-    loads.moment[i] += loads.damping_moment[i];
+    Load<dim>& own = loads.own[i];
+    Load<dim>& part = loads.damping[i];
+    part.force = damping_force(damping.kind, damping.translation, own.force,
+                               particles.velocity[i]); // eq. 18
+    part.moment = damping_force(damping.kind, damping.rotation, own.moment,
+                                particles.angular_velocity[i]); // eq. 19
+    own.force += part.force;
+    own.moment += part.moment;
   }
 }
 

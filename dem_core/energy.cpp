@@ -1,6 +1,7 @@
 #include "dem_core/energy.hpp"
 
 #include "common/ordered_sum.hpp"
+#include "dem_core/integrate.hpp"
 
 namespace kerf::dem {
 
@@ -29,26 +30,33 @@ void add_halves(StepWork& work, double Work::*book, const Vector& force, const V
 
 } // namespace
 
-template <int dim> double kinetic_energy(const Particles<dim>& p) {
+template <int dim>
+double kinetic_energy(const Particles<dim>& p, const Loads<dim>& loads,
+                      const Boundary<dim>& boundary, double time_step) {
   return ordered_sum(p.size(), [&](std::size_t i) {
-    return 0.5 * p.mass[i] * p.velocity_before[i].dot(p.velocity[i]) +
-           0.5 * p.inertia[i] * p.angular_velocity_before[i].dot(p.angular_velocity[i]);
+    const auto before = half_step_before(p, loads, boundary, time_step, i);
+    return 0.5 * p.mass[i] * before.velocity.dot(p.velocity[i]) +
+           0.5 * p.inertia[i] * before.angular_velocity.dot(p.angular_velocity[i]);
   });
 }
 
 template <int dim> double elastic_energy(const Contacts<dim>& c) {
   return ordered_sum(c.size(), [&](std::size_t k) {
     const double F_n = c.normal_force[k];
-    return c.weight[k] *
-           (half_square_over(F_n * F_n, c.normal_stiffness[k]) +
-            half_square_over(c.shear_force[k].squaredNorm(), c.tangential_stiffness[k]));
+    const double energy =
+        half_square_over(F_n * F_n, c.normal_stiffness[k]) +
+        half_square_over(c.shear_force[k].squaredNorm(), c.tangential_stiffness[k]);
+    return c.weight.empty() ? energy : c.weight[k] * energy;
   });
 }
 
-template <int dim> Vec<dim> momentum(const Particles<dim>& p) {
+template <int dim>
+Vec<dim> momentum(const Particles<dim>& p, const Loads<dim>& loads, const Boundary<dim>& boundary,
+                  double time_step) {
   return ordered_sum(p.size(),
                      [&](std::size_t i) {
-                       return Total<dim>{0.5 * p.mass[i] * (p.velocity_before[i] + p.velocity[i])};
+                       const auto before = half_step_before(p, loads, boundary, time_step, i);
+                       return Total<dim>{0.5 * p.mass[i] * (before.velocity + p.velocity[i])};
                      })
       .value;
 }
@@ -57,29 +65,34 @@ template <int dim>
 StepWork step_work(const Particles<dim>& p, const Loads<dim>& loads, const Boundary<dim>& boundary,
                    std::span<const std::uint32_t> touched, double time_step) {
   const auto prescribed = boundary.particles();
+  const auto before = [&](std::size_t i) {
+    return half_step_before(p, loads, boundary, time_step, i);
+  };
   StepWork work = ordered_sum(prescribed.size(), [&](std::size_t entry) {
     const std::uint32_t i = prescribed[entry];
-    const Vec<dim> a = (p.velocity[i] - p.velocity_before[i]) / time_step;
-    Vec<dim> reaction = p.mass[i] * a - loads.force[i] - loads.interface_force[i]; // N
+    const Vec<dim> v_before = before(i).velocity;
+    Vec<dim> reaction = p.mass[i] * ((p.velocity[i] - v_before) / time_step -
+                                     acceleration(p, loads, i).translation); // N
     for (int axis = 0; axis < dim; ++axis)
       if (!boundary.prescribes(i, axis))
         reaction[axis] = 0.0;
     StepWork one;
-    add_halves(one, &Work::external, reaction, p.velocity_before[i], p.velocity[i], time_step);
+    add_halves(one, &Work::external, reaction, v_before, p.velocity[i], time_step);
     return one;
   });
   work += ordered_sum(touched.size(), [&](std::size_t entry) {
     const std::uint32_t i = touched[entry];
     StepWork one;
-    add_halves(one, &Work::interface, loads.interface_force[i], p.velocity_before[i], p.velocity[i],
+    add_halves(one, &Work::interface, loads.interface_force[i], before(i).velocity, p.velocity[i],
                time_step);
     return one;
   });
-  work += ordered_sum(loads.damping_force.size(), [&](std::size_t i) {
+  work += ordered_sum(loads.damping.size(), [&](std::size_t i) {
+    const auto half = before(i);
     StepWork one;
-    add_halves(one, &Work::damping, loads.damping_force[i], p.velocity_before[i], p.velocity[i],
+    add_halves(one, &Work::damping, loads.damping[i].force, half.velocity, p.velocity[i],
                time_step);
-    add_halves(one, &Work::damping, loads.damping_moment[i], p.angular_velocity_before[i],
+    add_halves(one, &Work::damping, loads.damping[i].moment, half.angular_velocity,
                p.angular_velocity[i], time_step);
     return one;
   });
@@ -87,9 +100,11 @@ StepWork step_work(const Particles<dim>& p, const Loads<dim>& loads, const Bound
 }
 
 #define KERF_INSTANTIATE(dim)                                                                      \
-  template double kinetic_energy<dim>(const Particles<dim>&);                                      \
+  template double kinetic_energy<dim>(const Particles<dim>&, const Loads<dim>&,                    \
+                                      const Boundary<dim>&, double);                               \
   template double elastic_energy<dim>(const Contacts<dim>&);                                       \
-  template Vec<dim> momentum<dim>(const Particles<dim>&);                                          \
+  template Vec<dim> momentum<dim>(const Particles<dim>&, const Loads<dim>&, const Boundary<dim>&,  \
+                                  double);                                                         \
   template StepWork step_work<dim>(const Particles<dim>&, const Loads<dim>&, const Boundary<dim>&, \
                                    std::span<const std::uint32_t>, double);
 KERF_INSTANTIATE(2)

@@ -22,11 +22,16 @@ struct Energies {
   double fracture_dissipation = 0.0; // energy that was stored in bonds when they broke
 };
 
-template <int dim> double kinetic_energy(const Particles<dim>& particles);
+/// Of t_n, as long as the loads are those of the last integrate().
+template <int dim>
+double kinetic_energy(const Particles<dim>& particles, const Loads<dim>& loads,
+                      const Boundary<dim>& boundary, double time_step);
 template <int dim> double elastic_energy(const Contacts<dim>& contacts);
 
 /// Momentum at t_n, the mean of half a step before and after, N s.
-template <int dim> Vec<dim> momentum(const Particles<dim>& particles);
+template <int dim>
+Vec<dim> momentum(const Particles<dim>& particles, const Loads<dim>& loads,
+                  const Boundary<dim>& boundary, double time_step);
 
 /// Work that has crossed the edge of the system.
 struct Work {

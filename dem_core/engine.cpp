@@ -50,49 +50,51 @@ Engine<dim>::Engine(const Settings<dim>& settings)
       period_(settings.period), particles_(make_particles<dim>(settings.positions, settings.radii,
                                                                settings.material.density)),
       boundary_(settings.boundary, particles_.reference),
-      start_rotation_(particles_.size(), Rot<dim>::Zero()), is_touched_(particles_.size(), 0) {
+      start_rotation_(particles_.size(), Rot<dim>::Zero()) {
   check(material_);
   const double width = skin_width(particles_.radius);
   contacts_ = make_contacts(particles_, material_, settings.gap_tolerance, width, period_);
   skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
   bonds_at_start_ = contacts_.bonds();
   start_rotation_ = apply_initial_displacements<dim>(initial_, particles_);
-  loads_.force.assign(size(), Vec<dim>::Zero());
-  loads_.moment.assign(size(), Rot<dim>::Zero());
-  loads_.interface_force.assign(size(), Vec<dim>::Zero());
+  loads_.own.resize(size() + contacts_.waiting_rows());
 }
 
-template <int dim> double Engine<dim>::stiffness(std::size_t i) const {
-  double sum = 0.0;
-  int count = 0;
-  for (std::uint32_t e = contacts_.offset[i]; e < contacts_.offset[i + 1]; ++e) {
-    const std::uint32_t k = contacts_.incidence[e] >> 1;
-    if (contacts_.bonded[k]) {
-      sum += contacts_.normal_stiffness[k];
-      ++count;
-    }
-  }
-  return count > 0 ? sum / count : material_.normal_stiffness;
+template <int dim> std::vector<double> Engine<dim>::stiffness() const {
+  std::vector<double> sum(size(), 0.0);
+  std::vector<int> count(size(), 0);
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    if (contacts_.bonded[k])
+      for (const std::uint32_t i : {contacts_.first[k], contacts_.second[k]}) {
+        sum[i] += contacts_.normal_stiffness[k];
+        ++count[i];
+      }
+  for (std::size_t i = 0; i < size(); ++i)
+    sum[i] = count[i] > 0 ? sum[i] / count[i] : material_.normal_stiffness;
+  return sum;
 }
 
 template <int dim> double Engine<dim>::memory() const {
   constexpr std::size_t vec = sizeof(Vec<dim>), rot = sizeof(Rot<dim>), number = sizeof(double);
-  constexpr std::size_t particle = 8 * vec + 6 * rot + 4 * number + 16;
-  constexpr std::size_t contact = 3 * vec + rot + 11 * number + 24;
-  return static_cast<double>(size() * particle + contacts_.size() * contact);
+  const std::size_t particle =
+      4 * vec + rot + 3 * number + particles_.weight.size() / size() * number;
+  const std::size_t rows = size() + contacts_.waiting_rows() + loads_.damping.size();
+  return static_cast<double>(size() * particle + rows * sizeof(Load<dim>)) + contacts_.memory();
 }
 
 template <int dim> void Engine<dim>::set_weights(std::span<const double> weight) {
   blend(particles_, weight);
-  blend(contacts_, particles_);
+  if (!weight.empty())
+    blend(contacts_, particles_);
 }
 
 template <int dim> StepLimit Engine<dim>::step_limit() const {
   std::vector<double> sums(size());
+  const Incidence incident = incidence(contacts_, size());
   const auto count = static_cast<std::int64_t>(size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < count; ++i)
-    sums[i] = row_sum(contacts_, particles_, boundary_, i);
+    sums[i] = row_sum(contacts_, incident, particles_, boundary_, i);
   const auto largest = std::max_element(sums.begin(), sums.end());
   return {*largest, fmt::format("particle {}", largest - sums.begin())};
 }
@@ -109,8 +111,9 @@ void Engine<dim>::inverse_mass(std::span<const std::uint32_t> points, std::span<
 template <int dim>
 void Engine<dim>::omega2(std::span<const std::uint32_t> points, std::span<double> out) const {
   assert(out.size() == points.size());
+  const Incidence incident = incidence(contacts_, size());
   for (std::size_t k = 0; k < points.size(); ++k)
-    out[k] = row_sum(contacts_, particles_, boundary_, points[k]);
+    out[k] = row_sum(contacts_, incident, particles_, boundary_, points[k]);
 }
 
 template <int dim> void Engine<dim>::start(double time_step) {
@@ -130,7 +133,7 @@ void Engine<dim>::motion(std::span<const std::uint32_t> points, std::span<double
     for (int a = 0; a < dim; ++a) {
       position[k * dim + a] = particles_.reference[i][a] + particles_.displacement[i][a];
       velocity[k * dim + a] =
-          boundary_.prescribes(i, a) ? boundary_.velocity(i)[a] : particles_.velocity[i][a];
+          boundary_.prescribes(i, a) ? boundary_.of(i)->velocity[a] : particles_.velocity[i][a];
     }
   }
 }
@@ -138,6 +141,7 @@ void Engine<dim>::motion(std::span<const std::uint32_t> points, std::span<double
 template <int dim> void Engine<dim>::compute_own_forces() {
   if (forces_are_current_)
     return;
+  forget_interface_forces();
   if (skin_.is_worn(particles_.displacement)) {
     renew_contacts(contacts_, particles_, material_, skin_.width(), period_);
     skin_ = Skin<dim>(skin_.width(), particles_.displacement);
@@ -147,8 +151,8 @@ template <int dim> void Engine<dim>::compute_own_forces() {
   const Increment<dim> increment =
       step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0}
                  : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_};
-  update_contacts(contacts_, particles_, increment, shear_increment_, material_.friction);
-  gather_contacts(contacts_, loads_);
+  compute_contact_forces(contacts_, particles_, increment, shear_increment_, material_.friction,
+                         loads_);
   add_damping(damping_, particles_, loads_);
   forces_are_current_ = true;
 }
@@ -158,13 +162,16 @@ void Engine<dim>::own_forces(std::span<const std::uint32_t> points, std::span<do
   assert(force.size() == points.size() * dim);
   for (std::size_t k = 0; k < points.size(); ++k)
     for (int a = 0; a < dim; ++a)
-      force[k * dim + a] = loads_.force[points[k]][a];
+      force[k * dim + a] = loads_.own[points[k]].force[a];
 }
 
 template <int dim>
 void Engine<dim>::add_interface_forces(std::span<const std::uint32_t> points,
                                        std::span<const double> force) {
   assert(force.size() == points.size() * dim);
+  forget_interface_forces();
+  loads_.interface_force.resize(size(), Vec<dim>::Zero());
+  is_touched_.resize(size(), 0);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::uint32_t i = points[k];
     for (int a = 0; a < dim; ++a)
@@ -176,15 +183,23 @@ void Engine<dim>::add_interface_forces(std::span<const std::uint32_t> points,
   }
 }
 
-template <int dim> void Engine<dim>::integrate() {
-  assert(time_step_ > 0.0 && forces_are_current_);
-  dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0);
-  book_step();
+/// Those of the last step stay for its books until the next step begins.
+template <int dim> void Engine<dim>::forget_interface_forces() {
+  if (!interface_forces_are_old_)
+    return;
   for (const std::uint32_t i : touched_) {
     loads_.interface_force[i].setZero();
     is_touched_[i] = 0;
   }
   touched_.clear();
+  interface_forces_are_old_ = false;
+}
+
+template <int dim> void Engine<dim>::integrate() {
+  assert(time_step_ > 0.0 && forces_are_current_);
+  skin_.wear(dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0));
+  book_step();
+  interface_forces_are_old_ = true;
   ++step_;
   boundary_.advance(step_, time_step_);
   forces_are_current_ = false;
@@ -200,22 +215,21 @@ template <int dim> void Engine<dim>::book_step() {
 }
 
 template <int dim> Energies Engine<dim>::energies() const {
-  const auto total = [](const std::vector<double>& loss) {
-    return ordered_sum(loss.size(), [&](std::size_t k) { return loss[k]; });
-  };
   Energies energies;
-  energies.kinetic = kinetic_energy(particles_);
+  energies.kinetic = kinetic_energy(particles_, loads_, boundary_, time_step_);
   energies.elastic = elastic_energy(contacts_);
   energies.external_work = work_.external;
   energies.interface_work = work_.interface;
   energies.damping_dissipation = -work_.damping;
-  energies.friction_dissipation = contacts_.lost_friction + total(contacts_.friction_loss);
-  energies.fracture_dissipation = total(contacts_.fracture_loss);
+  for (const ContactLosses& block : contacts_.losses) {
+    energies.friction_dissipation += block.friction;
+    energies.fracture_dissipation += block.fracture;
+  }
   return energies;
 }
 
 template <int dim> Vec<dim> Engine<dim>::momentum() const {
-  return dem::momentum(particles_);
+  return dem::momentum(particles_, loads_, boundary_, time_step_);
 }
 
 template <int dim> std::optional<std::uint32_t> Engine<dim>::first_not_finite() const {

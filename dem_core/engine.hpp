@@ -41,9 +41,8 @@ public:
   const Contacts<dim>& contacts() const noexcept { return contacts_; }
   const Boundary<dim>& boundary() const noexcept { return boundary_; }
 
-  /// Mean normal stiffness of the bonds and contacts of particle i; of the material if it has
-  /// none, N/m.
-  double stiffness(std::size_t i) const;
+  /// Mean normal stiffness of the bonds of each particle; of the material if it has none, N/m.
+  std::vector<double> stiffness() const;
   std::size_t bonds_at_start() const noexcept { return bonds_at_start_; }
   std::size_t bonds() const noexcept { return contacts_.bonds(); }
   std::size_t renewals() const noexcept { return renewals_; } // of the list of contacts
@@ -82,6 +81,7 @@ public:
 
 private:
   void book_step();
+  void forget_interface_forces();
 
   Material material_;
   Damping damping_;
@@ -100,8 +100,9 @@ private:
   std::uint64_t step_ = 0;
   bool forces_are_current_ = false;
   Loads<dim> loads_;
-  std::vector<std::uint32_t> touched_; // particles with an interface force
-  std::vector<std::uint8_t> is_touched_;
+  std::vector<std::uint32_t> touched_;   // particles with an interface force
+  std::vector<std::uint8_t> is_touched_; // [n], or empty until there is one
+  bool interface_forces_are_old_ = false;
   Work work_;       // until t_n
   Work work_ahead_; // until t_(n+1/2)
 };

@@ -1,42 +1,50 @@
 #include "dem_core/integrate.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace kerf::dem {
 
+namespace {
+
+/// Puts the given components in place of those that the forces have made.
 template <int dim>
-void integrate(Particles<dim>& p, const Loads<dim>& loads, const Boundary<dim>& boundary,
-               double time_step, bool is_first_step) {
+void prescribe(PrescribedMotion<dim>& prescribed, const Vec<dim>& velocity_before,
+               bool is_first_step, Vec<dim>& v, Rot<dim>& omega) {
+  for (int axis = 0; axis < dim; ++axis)
+    if (prescribed.prescribes(axis)) {
+      v[axis] = prescribed.velocity[axis];
+      prescribed.velocity_before[axis] = is_first_step ? v[axis] : velocity_before[axis];
+    }
+  if (prescribed.holds_rotation())
+    omega.setZero();
+}
+
+} // namespace
+
+template <int dim>
+double integrate(Particles<dim>& p, const Loads<dim>& loads, Boundary<dim>& boundary,
+                 double time_step, bool is_first_step) {
   const double back = is_first_step ? 0.5 * time_step : 0.0; // from t_0 to t_(-1/2), s
   const auto count = static_cast<std::int64_t>(p.size());
-#pragma omp parallel for schedule(static)
+  double fastest2 = 0.0; // m²/s²
+#pragma omp parallel for schedule(static) reduction(max : fastest2) if (count > particles_per_block)
   for (std::int64_t i = 0; i < count; ++i) {
-    const Vec<dim> a = (loads.force[i] + loads.interface_force[i]) / p.mass[i]; // m/s²; eq. 3
-    const Rot<dim> alpha = loads.moment[i] / p.inertia[i];                      // rad/s²; eq. 6
-    Vec<dim> v_before = p.velocity[i] - back * a;
-    Rot<dim> omega_before = p.angular_velocity[i] - back * alpha;
-    Vec<dim> v = v_before + time_step * a;             // eq. 4
-    Rot<dim> omega = omega_before + time_step * alpha; // eq. 7
-
-    if (boundary.components(i) != 0) {
-      for (int axis = 0; axis < dim; ++axis)
-        if (boundary.prescribes(i, axis)) {
-          v[axis] = boundary.velocity(i)[axis];
-          if (is_first_step)
-            v_before[axis] = v[axis];
-        }
-      if (boundary.holds_rotation(i)) {
-        omega.setZero();
-        omega_before.setZero();
-      }
-    }
-    p.velocity_before[i] = v_before;
-    p.angular_velocity_before[i] = omega_before;
+    const auto a = acceleration(p, loads, i);
+    const Vec<dim> v_before = p.velocity[i];
+    Vec<dim> v = (v_before - back * a.translation) + time_step * a.translation;            // eq. 4
+    Rot<dim> omega = (p.angular_velocity[i] - back * a.rotation) + time_step * a.rotation; // eq. 7
+    if (PrescribedMotion<dim>* prescribed = boundary.of(i))
+      prescribe(*prescribed, v_before, is_first_step, v, omega);
     p.velocity[i] = v;
     p.angular_velocity[i] = omega;
     p.displacement[i] += time_step * v; // eq. 5
+    fastest2 = std::max(fastest2, v.squaredNorm());
   }
+  return time_step * std::sqrt(fastest2);
 }
 
-template void integrate<2>(Particles<2>&, const Loads<2>&, const Boundary<2>&, double, bool);
-template void integrate<3>(Particles<3>&, const Loads<3>&, const Boundary<3>&, double, bool);
+template double integrate<2>(Particles<2>&, const Loads<2>&, Boundary<2>&, double, bool);
+template double integrate<3>(Particles<3>&, const Loads<3>&, Boundary<3>&, double, bool);
 
 } // namespace kerf::dem

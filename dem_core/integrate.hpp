@@ -12,9 +12,46 @@ namespace kerf::dem {
 ///
 /// In the first step the velocities are v^0, and v^(-1/2) = v^0 - a dt / 2 comes first. Prescribed
 /// components follow the boundary instead; they move with their first velocity before the start.
-/// Writes velocity_before too.
+/// @return the farthest that a particle has moved, m
 template <int dim>
-void integrate(Particles<dim>& particles, const Loads<dim>& loads, const Boundary<dim>& boundary,
-               double time_step, bool is_first_step);
+double integrate(Particles<dim>& particles, const Loads<dim>& loads, Boundary<dim>& boundary,
+                 double time_step, bool is_first_step);
+
+/// What drives a particle, m/s² and rad/s².
+template <int dim> struct Acceleration {
+  Vec<dim> translation;
+  Rot<dim> rotation;
+};
+template <int dim>
+Acceleration<dim> acceleration(const Particles<dim>& particles, const Loads<dim>& loads,
+                               std::size_t i) {
+  Vec<dim> force = loads.own[i].force;
+  if (!loads.interface_force.empty())
+    force += loads.interface_force[i];
+  return {force / particles.mass[i],                   // Rojek (2008) eq. 3
+          loads.own[i].moment / particles.inertia[i]}; // eq. 6
+}
+
+/// v^(n-1/2) and omega^(n-1/2), as long as the loads are those of the last integrate().
+template <int dim> struct HalfStepBefore {
+  Vec<dim> velocity;
+  Rot<dim> angular_velocity;
+};
+template <int dim>
+HalfStepBefore<dim> half_step_before(const Particles<dim>& particles, const Loads<dim>& loads,
+                                     const Boundary<dim>& boundary, double time_step,
+                                     std::size_t i) {
+  const auto a = acceleration(particles, loads, i);
+  HalfStepBefore<dim> before{particles.velocity[i] - time_step * a.translation,
+                             particles.angular_velocity[i] - time_step * a.rotation};
+  if (const PrescribedMotion<dim>* prescribed = boundary.of(i)) {
+    for (int axis = 0; axis < dim; ++axis)
+      if (prescribed->prescribes(axis))
+        before.velocity[axis] = prescribed->velocity_before[axis];
+    if (prescribed->holds_rotation())
+      before.angular_velocity.setZero();
+  }
+  return before;
+}
 
 } // namespace kerf::dem

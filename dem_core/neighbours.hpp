@@ -36,11 +36,15 @@ public:
       : width_(width), displacement_(displacement.begin(), displacement.end()) {}
 
   double width() const noexcept { return width_; }
-  /// True as soon as one particle has moved by more than half the width.
-  bool is_worn(std::span<const Vec<dim>> displacement) const;
+  /// Takes notice of a step in which no particle moved farther than this, m.
+  void wear(double farthest) noexcept { bound_ += farthest; }
+  /// True as soon as one particle has moved by more than half the width. The steps add up to a
+  /// bound that spares looking at all particles as long as it is small.
+  bool is_worn(std::span<const Vec<dim>> displacement);
 
 private:
   double width_ = 0.0;
+  double bound_ = 0.0; // of the distance that any particle has moved, m
   std::vector<Vec<dim>> displacement_;
 };
 

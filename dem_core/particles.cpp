@@ -30,14 +30,11 @@ Particles<dim> make_particles(std::span<const Vec<dim>> positions, std::span<con
   particles.reference.assign(positions.begin(), positions.end());
   particles.radius.assign(radii.begin(), radii.end());
   particles.density = density;
-  particles.weight.resize(n);
   particles.mass.resize(n);
   particles.inertia.resize(n);
   particles.displacement.assign(n, Vec<dim>::Zero());
   particles.velocity.assign(n, Vec<dim>::Zero());
   particles.angular_velocity.assign(n, Rot<dim>::Zero());
-  particles.velocity_before = particles.velocity;
-  particles.angular_velocity_before = particles.angular_velocity;
   blend(particles, std::span<const double>());
   return particles;
 }
@@ -46,6 +43,7 @@ template <int dim> void blend(Particles<dim>& particles, std::span<const double>
   if (!weight.empty() && weight.size() != particles.size())
     throw std::invalid_argument(
         fmt::format("{} weights for {} particles", weight.size(), particles.size()));
+  particles.weight.assign(weight.begin(), weight.end());
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const double w = weight.empty() ? 1.0 : weight[i];
     if (!(w >= 0.0) || !std::isfinite(w))
@@ -54,7 +52,6 @@ template <int dim> void blend(Particles<dim>& particles, std::span<const double>
     const double r = particles.radius[i];
     const double volume =
         dim == 2 ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    particles.weight[i] = w;
     particles.mass[i] = bounded_share(w) * volume * particles.density; // eqs 48-49
     particles.inertia[i] = (dim == 2 ? 0.5 : 0.4) * particles.mass[i] * r * r;
   }

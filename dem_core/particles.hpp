@@ -26,15 +26,13 @@ template <int dim> struct Particles {
   std::vector<double> radius;      // m
   double density = 0.0;            // kg/m³
 
-  std::vector<double> weight;  // 1 - alpha at the centre; above one outside the zone of blending
+  std::vector<double> weight;  // 1 - alpha at the centre, > 1 beyond the zone; empty: all are one
   std::vector<double> mass;    // blended, kg; pi r² rho or 4/3 pi r³ rho
   std::vector<double> inertia; // blended, kg m²; m r² / 2 or 2/5 m r²
 
   std::vector<Vec<dim>> displacement;     // u^n, m
   std::vector<Vec<dim>> velocity;         // v^(n-1/2), v^0 before the first step, m/s
   std::vector<Rot<dim>> angular_velocity; // omega^(n-1/2), omega^0 before the first step, rad/s
-  std::vector<Vec<dim>> velocity_before;  // the same half a step earlier than the last step, m/s
-  std::vector<Rot<dim>> angular_velocity_before; // rad/s
 
   std::size_t size() const noexcept { return radius.size(); }
   Vec<dim> position(std::size_t i) const { return reference[i] + displacement[i]; }

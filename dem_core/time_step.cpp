@@ -27,24 +27,23 @@ template <int dim> Kinematics<dim> rolling(const Vec<dim>& n, double arm_over_ra
 } // namespace
 
 template <int dim>
-double row_sum(const Contacts<dim>& c, const Particles<dim>& p, const Boundary<dim>& boundary,
-               std::size_t i) {
+double row_sum(const Contacts<dim>& c, const Incidence& incidence, const Particles<dim>& p,
+               const Boundary<dim>& boundary, std::size_t i) {
   Block<dim> own = Block<dim>::Zero(); // summed before absolute values are taken
   Row<dim> others = Row<dim>::Zero();
-  for (std::uint32_t e = c.offset[i]; e < c.offset[i + 1]; ++e) {
-    const std::uint32_t k = c.incidence[e] >> 1;
-    const bool is_second = (c.incidence[e] & 1u) != 0;
-    const Vec<dim> relative = p.displacement[c.second[k]] - p.displacement[c.first[k]];
-    const Vec<dim> branch = c.reference_branch[k] + relative;
-    const double length = branch.norm();
-    if (!c.carries(k, opening(c, k, relative, length)))
+  for (std::uint32_t e = incidence.offset[i]; e < incidence.offset[i + 1]; ++e) {
+    const std::uint32_t k = incidence.entry[e] >> 1;
+    const bool is_second = (incidence.entry[e] & 1u) != 0;
+    const Span<dim> span = span_of(c, p, k);
+    if (!c.carries(k, span.opening))
       continue;
 
-    const Vec<dim> n = (is_second ? -1.0 : 1.0) / length * branch; // away from particle i
+    const Vec<dim> n = is_second ? Vec<dim>(-span.normal()) : span.normal(); // away from particle i
+    const double length = span.length;
     const double lever = length / (p.radius[c.first[k]] + p.radius[c.second[k]]);
     const Eigen::Matrix<double, dim, dim> normal = n * n.transpose();
     const Eigen::Matrix<double, dim, dim> stiffness =
-        c.weight[k] *
+        (c.weight.empty() ? 1.0 : c.weight[k]) *
         (c.normal_stiffness[k] * normal +
          c.tangential_stiffness[k] * (Eigen::Matrix<double, dim, dim>::Identity() - normal));
     Kinematics<dim> self = rolling<dim>(n, lever), other = self;
@@ -67,9 +66,9 @@ double row_sum(const Contacts<dim>& c, const Particles<dim>& p, const Boundary<d
   return largest;
 }
 
-template double row_sum<2>(const Contacts<2>&, const Particles<2>&, const Boundary<2>&,
-                           std::size_t);
-template double row_sum<3>(const Contacts<3>&, const Particles<3>&, const Boundary<3>&,
-                           std::size_t);
+template double row_sum<2>(const Contacts<2>&, const Incidence&, const Particles<2>&,
+                           const Boundary<2>&, std::size_t);
+template double row_sum<3>(const Contacts<3>&, const Incidence&, const Particles<3>&,
+                           const Boundary<3>&, std::size_t);
 
 } // namespace kerf::dem

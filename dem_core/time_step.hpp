@@ -18,7 +18,7 @@ namespace kerf::dem {
 /// the bound would depend on the unit of length.
 /// @see S. Gershgorin, Izv. Akad. Nauk SSSR, Otd. Mat. (1931) 749-754
 template <int dim>
-double row_sum(const Contacts<dim>& contacts, const Particles<dim>& particles,
-               const Boundary<dim>& boundary, std::size_t i);
+double row_sum(const Contacts<dim>& contacts, const Incidence& incidence,
+               const Particles<dim>& particles, const Boundary<dim>& boundary, std::size_t i);
 
 } // namespace kerf::dem

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -61,12 +62,19 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
   for (std::size_t i = 0; i < p.size(); ++i) {
     position[i] = p.position(i);
     id[i] = static_cast<std::int64_t>(i);
-    boundary[i] = engine_.boundary().components(i) != 0 ? 1 : 0;
+    boundary[i] = engine_.boundary().of(i) != nullptr ? 1 : 0;
   }
   std::vector<std::uint32_t> pairs;
   for (std::size_t k = 0; k < c.size(); ++k)
     pairs.insert(pairs.end(), {c.first[k], c.second[k]});
   const std::vector<std::int64_t> bonded = integers(c.bonded);
+  std::vector<Vec<dim>> tangential_force(c.size());
+  for (std::size_t k = 0; k < c.size(); ++k)
+    tangential_force[k] = shear_force(c, p, k);
+  const std::vector<double> ones(std::max(p.size(), c.size()), 1.0); // where nothing is blended
+  const auto weights = [&](const std::vector<double>& weight, std::size_t count) {
+    return std::span<const double>(weight.empty() ? ones : weight).first(count);
+  };
 
   Grid particles{.name = "particles",
                  .positions = flat(position),
@@ -81,7 +89,7 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
                             {"displacement", dim, flat(p.displacement)},
                             {"velocity", dim, flat(p.velocity)},
                             {"angular_velocity", rotations<dim>, flat(p.angular_velocity)},
-                            {"weight", 1, std::span<const double>(p.weight)},
+                            {"weight", 1, weights(p.weight, p.size())},
                             {"boundary", 1, std::span<const std::int64_t>(boundary)}};
   Grid contacts{.name = "contacts",
                 .positions = {},
@@ -93,10 +101,10 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
   contacts.cell_fields = {
       {"bonded", 1, std::span<const std::int64_t>(bonded)},
       {"normal_force", 1, std::span<const double>(c.normal_force)},
-      {"tangential_force", dim, flat(c.shear_force)},
+      {"tangential_force", dim, flat(tangential_force)},
       {"normal_stiffness", 1, std::span<const double>(c.normal_stiffness)},
       {"tangential_stiffness", 1, std::span<const double>(c.tangential_stiffness)},
-      {"weight", 1, std::span<const double>(c.weight)}};
+      {"weight", 1, weights(c.weight, c.size())}};
   const Grid grids[] = {std::move(particles), std::move(contacts)};
   frames_.write(step, time, grids);
 }

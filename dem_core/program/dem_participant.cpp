@@ -64,10 +64,9 @@ template <int dim> coupler::Declaration declare(const Engine<dim>& engine) {
   d.ids.resize(engine.size());
   std::iota(d.ids.begin(), d.ids.end(), 0);
   const Particles<dim>& p = engine.particles();
-  for (std::size_t i = 0; i < engine.size(); ++i) {
-    d.positions.insert(d.positions.end(), p.reference[i].begin(), p.reference[i].end());
-    d.stiffness.push_back(engine.stiffness(i));
-  }
+  for (const Vec<dim>& x : p.reference)
+    d.positions.insert(d.positions.end(), x.begin(), x.end());
+  d.stiffness = engine.stiffness();
   d.radii = p.radius;
   d.memory_estimate = engine.memory();
   return d;

@@ -19,8 +19,8 @@ inline coupler::Declaration declare(const dem::Engine<2>& engine) {
     d.ids.push_back(static_cast<std::int64_t>(i));
     d.positions.insert(d.positions.end(), x.begin(), x.end());
     d.radii.push_back(engine.particles().radius[i]);
-    d.stiffness.push_back(engine.stiffness(i));
   }
+  d.stiffness = engine.stiffness();
   return d;
 }
 

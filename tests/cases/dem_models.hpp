@@ -123,15 +123,13 @@ template <int dim> Eigen::MatrixXd scaled_stiffness(const dem::Engine<dim>& engi
       particles.displacement[i][a] = size_of_move;
     else
       rotation[i][a - dim] = size_of_move;
-    dem::update_contacts(contacts, particles, {particles.displacement, rotation, 1.0},
-                         dem::ShearIncrement::midpoint, 0.0);
     dem::Loads<dim> loads;
-    loads.force.resize(n);
-    loads.moment.resize(n);
-    dem::gather_contacts(contacts, loads);
+    dem::compute_contact_forces(contacts, particles, {particles.displacement, rotation, 1.0},
+                                dem::ShearIncrement::midpoint, 0.0, loads);
     Eigen::VectorXd all(size);
     for (std::size_t j = 0; j < n; ++j)
-      all.segment<dofs>(static_cast<Eigen::Index>(j) * dofs) << loads.force[j], loads.moment[j];
+      all.segment<dofs>(static_cast<Eigen::Index>(j) * dofs) << loads.own[j].force,
+          loads.own[j].moment;
     return all;
   };
 

@@ -26,20 +26,21 @@ public:
     const std::vector<Vec<2>> translation = {Vec<2>::Zero(), by};
     const std::vector<Rot<2>> rotation(2, Rot<2>::Zero());
     particles_.displacement[1] += by;
-    dem::update_contacts(contacts_, particles_, {translation, rotation, 1.0},
-                         dem::ShearIncrement::midpoint, friction_);
+    dem::compute_contact_forces(contacts_, particles_, {translation, rotation, 1.0},
+                                dem::ShearIncrement::midpoint, friction_, loads_);
   }
-  void set_weight(double weight) { contacts_.weight[0] = weight; }
+  void set_weight(double weight) { contacts_.weight = {weight}; }
   bool bonded() const { return contacts_.bonded[0]; }
   double normal() const { return contacts_.normal_force[0]; }
   double shear() const { return contacts_.shear_force[0].norm(); }
-  double friction_loss() const { return contacts_.friction_loss[0]; }
-  double force() const { return contacts_.force[0].norm(); }
+  double friction_loss() const { return contacts_.losses[0].friction; }
+  double force() const { return loads_.own[0].force.norm(); }
 
 private:
   double friction_;
   dem::Particles<2> particles_;
   dem::Contacts<2> contacts_;
+  dem::Loads<2> loads_;
 };
 
 dem::Material brittle(double R_n, double R_t, double friction = 0.0) {

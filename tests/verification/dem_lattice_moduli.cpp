@@ -26,18 +26,18 @@ Matrix<dim> stress(const dem::Engine<dim>& engine, const Matrix<dim>& strain,
   for (std::size_t i = 0; i < particles.size(); ++i)
     particles.displacement[i] = strain * particles.reference[i];
   const std::vector<Rot<dim>> no_rotation(particles.size(), Rot<dim>::Zero());
-  dem::update_contacts(contacts, particles, {particles.displacement, no_rotation, 1.0},
-                       dem::ShearIncrement::midpoint, 0.0);
+  dem::Loads<dim> loads;
+  dem::compute_contact_forces(contacts, particles, {particles.displacement, no_rotation, 1.0},
+                              dem::ShearIncrement::midpoint, 0.0, loads);
   Matrix<dim> sum = Matrix<dim>::Zero();
   std::size_t count = 0;
-  for (std::size_t i = 0; i < particles.size(); ++i)
-    if (inside.contains(particles.reference[i])) {
-      ++count;
-      for (std::uint32_t e = contacts.offset[i]; e < contacts.offset[i + 1]; ++e) {
-        const auto k = contacts.incidence[e] >> 1;
-        sum += 0.5 * contacts.reference_branch[k] * contacts.force[k].transpose();
-      }
-    }
+  for (const Vec<dim>& x : particles.reference)
+    count += inside.contains(x) ? 1 : 0;
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    for (const std::uint32_t i : {contacts.first[k], contacts.second[k]})
+      if (inside.contains(particles.reference[i]))
+        sum += 0.5 * contacts.reference_branch[k] *
+               dem::contact_force(contacts, particles, k).transpose();
   return sum / (static_cast<double>(count) * volume);
 }
 

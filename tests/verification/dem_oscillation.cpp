@@ -71,7 +71,7 @@ template <int dim> void shear_vibrates_with_both_inertias(double factor) {
   engine.start(dt);
   for (int n = 0; n < 300; ++n) {
     cases::step(engine);
-    ASSERT_NEAR(engine.contacts().shear_force[0][1],
+    ASSERT_NEAR(dem::shear_force(engine.contacts(), engine.particles(), 0)[1],
                 settings.material.tangential_stiffness * largest * std::sin(n * phi),
                 1e-6 * settings.material.tangential_stiffness * largest)
         << "step " << n;

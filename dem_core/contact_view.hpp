@@ -1,0 +1,44 @@
+// What the kernels of the contact forces see of the contacts: pointers and plain numbers.
+#pragma once
+
+#include <cstdint>
+
+namespace kerf::dem {
+
+enum class BreakMode : std::uint8_t { tension, shear };
+
+/// The contacts of one block and the particles they join. The kernels are compiled once for every
+/// set of instructions and must not share inline functions with anything else, hence no classes.
+template <int dim> struct ContactView {
+  static constexpr int shear_components = dim == 2 ? 1 : 3;
+
+  std::uint32_t begin, end; // contacts of this block
+
+  // One entry a contact; see Contacts.
+  const std::uint32_t *first, *second, *target;
+  const double* reference_branch[dim];
+  const double *rest_length, *share;
+  const double *normal_stiffness, *tangential_stiffness, *tensile_strength, *shear_strength;
+  const double* weight; // null: one everywhere
+  std::uint8_t* bonded;
+  double* normal_force;
+  double* shear[shear_components];
+
+  // One row of dim (or one rotation) a particle.
+  std::uint32_t particles;
+  const double *displacement, *translation, *rotation;
+  double scale;    // of translation and rotation
+  double half;     // where the slip is measured: 0.5 in the middle of the increment, 0 at its end
+  double friction; // mu
+
+  double* loads; // rows of 4 (2D) or 8 (3D): force, moment
+
+  double friction_loss, fracture_loss; // are added to, J
+  void (*on_break)(void* list, std::uint32_t contact, BreakMode mode, double energy);
+  void* breaks; // the list
+};
+
+/// Adds forces and moments of the contacts of a view to the loads, and follows their history.
+template <int dim> using ContactKernel = void (*)(ContactView<dim>&);
+
+} // namespace kerf::dem
