@@ -10,7 +10,8 @@ function(kerf_add_kernels target)
     target_include_directories(${target}_${set} PRIVATE ${PROJECT_SOURCE_DIR})
     target_link_libraries(${target}_${set} PRIVATE kerf::warnings)
     # -Wno-psabi: vectors as parameters of functions that are always inlined.
-    target_compile_options(${target}_${set} PRIVATE ${flags_${set}} -fno-math-errno -fno-trapping-math -Wno-psabi)
+    target_compile_options(${target}_${set} PRIVATE ${flags_${set}} -fno-tree-vectorize -fno-math-errno -fno-trapping-math
+                                                        -Wno-psabi)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${set}>)
   endforeach()
 endfunction()

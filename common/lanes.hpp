@@ -60,6 +60,28 @@ KERF_INLINE void store_some(double* to, const Lanes& lanes, int count) {
       to[l] = lanes[l];
 }
 
+/// True where a flag is not zero.
+KERF_INLINE Mask load_flags(const std::uint8_t* from) {
+#if defined(__AVX512F__)
+  std::int64_t bytes;
+  std::memcpy(&bytes, from, sizeof bytes);
+  return (Mask)_mm512_cvtepu8_epi64(_mm_cvtsi64_si128(bytes)) != 0;
+#elif defined(__AVX2__)
+  std::int32_t bytes;
+  std::memcpy(&bytes, from, sizeof bytes);
+  return (Mask)_mm256_cvtepu8_epi64(_mm_cvtsi32_si128(bytes)) != 0;
+#else
+  return Mask{-static_cast<std::int64_t>(from[0] != 0), -static_cast<std::int64_t>(from[1] != 0)};
+#endif
+}
+/// True when a number of the next ones is `wanted`.
+KERF_INLINE bool any_is(const std::uint32_t* from, std::uint32_t wanted) {
+  bool is = false;
+  for (int l = 0; l < width; ++l)
+    is |= from[l] == wanted;
+  return is;
+}
+
 KERF_INLINE Row4 load_row4(const double* from) {
   Row4 row;
   std::memcpy(&row, from, sizeof row);
@@ -88,11 +110,32 @@ KERF_INLINE Lanes square_root(const Lanes& x) {
   return (Lanes)_mm_sqrt_pd((__m128d)x);
 #endif
 }
+/// 1 / sqrt(x) to the last digit or two; x > 0.
+KERF_INLINE Lanes inverse_square_root(const Lanes& x) {
+#if defined(__AVX512F__)
+  Lanes y = (Lanes)_mm512_rsqrt14_pd((__m512d)x); // 14 bits, doubled by each Newton iteration
+  const Lanes half = 0.5 * x;
+  y = y * (1.5 - half * y * y);
+  return y * (1.5 - half * y * y);
+#else
+  return 1.0 / square_root(x);
+#endif
+}
+/// 1 / x, likewise; x is not zero.
+KERF_INLINE Lanes inverse(const Lanes& x) {
+#if defined(__AVX512F__)
+  Lanes y = (Lanes)_mm512_rcp14_pd((__m512d)x);
+  y = y * (2.0 - x * y);
+  return y * (2.0 - x * y);
+#else
+  return 1.0 / x;
+#endif
+}
 KERF_INLINE Lanes absolute(const Lanes& x) {
   return (Lanes)((Mask)x & INT64_MAX);
 }
 /// Sum of the lanes, pairwise.
-KERF_INLINE double sum(const Lanes& x) {
+KERF_INLINE double total(const Lanes& x) {
   double value[width];
   std::memcpy(value, &x, sizeof value);
   for (int half = width / 2; half > 0; half /= 2)
@@ -157,14 +200,24 @@ KERF_INLINE void to_rows(const Lanes (&column)[4], Row4 (&row)[width]) {
 #endif
 }
 
+#if defined(__AVX512F__)
 KERF_INLINE void to_rows(const Lanes (&column)[8], Row8 (&row)[width]) {
-  const Lanes(&low)[4] = reinterpret_cast<const Lanes(&)[4]>(column[0]);
-  const Lanes(&high)[4] = reinterpret_cast<const Lanes(&)[4]>(column[4]);
-  Row4 low_row[width], high_row[width];
-  to_rows(low, low_row);
-  to_rows(high, high_row);
-  for (int l = 0; l < width; ++l)
-    row[l] = __builtin_shufflevector(low_row[l], high_row[l], 0, 1, 2, 3, 4, 5, 6, 7);
+  Row8 a[8], b[8];
+  for (int c = 0; c < 8; c += 2) {
+    a[c] = __builtin_shufflevector(column[c], column[c + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    a[c + 1] = __builtin_shufflevector(column[c], column[c + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int half = 0; half < 8; half += 4) { // columns 0-3, then 4-7
+    b[half] = __builtin_shufflevector(a[half], a[half + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+    b[half + 1] = __builtin_shufflevector(a[half + 1], a[half + 3], 0, 1, 8, 9, 4, 5, 12, 13);
+    b[half + 2] = __builtin_shufflevector(a[half], a[half + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    b[half + 3] = __builtin_shufflevector(a[half + 1], a[half + 3], 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  for (int l = 0; l < 4; ++l) {
+    row[l] = __builtin_shufflevector(b[l], b[l + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    row[l + 4] = __builtin_shufflevector(b[l], b[l + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
 }
+#endif
 
 } // namespace kerf::KERF_ISA

@@ -44,6 +44,7 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
   view.shear_strength = c.shear_strength.data();
   view.weight = c.weight.empty() ? nullptr : c.weight.data();
   view.bonded = c.bonded.data();
+  view.bonded_at_start = c.bonded_at_start.data();
   view.normal_force = c.normal_force.data();
   for (int a = 0; a < ContactView<dim>::shear_components; ++a)
     view.shear[a] = c.shear_force.of[a].data();

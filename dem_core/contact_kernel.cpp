@@ -46,16 +46,14 @@ template <int dim, bool whole> struct Batch {
   const ContactView<dim>& c;
   std::uint32_t k;
   int count;
-  std::uint32_t i[width], j[width];
 
   KERF_INLINE Batch(const ContactView<dim>& view, std::uint32_t first_contact)
-      : c(view), k(first_contact) {
-    count = whole || view.end - k >= width ? width : static_cast<int>(view.end - k);
-    for (int l = 0; l < width; ++l) {
-      const std::uint32_t at = k + static_cast<std::uint32_t>(whole || l < count ? l : count - 1);
-      i[l] = c.first[at];
-      j[l] = c.second[at];
-    }
+      : c(view), k(first_contact),
+        count(whole || view.end - k >= width ? width : static_cast<int>(view.end - k)) {}
+
+  /// An index of lane l; beyond the end that of the last contact.
+  KERF_INLINE std::size_t index(const std::uint32_t* column, int l) const {
+    return column[k + static_cast<std::uint32_t>(whole || l < count ? l : count - 1)];
   }
 
   /// A number of each contact.
@@ -70,8 +68,8 @@ template <int dim, bool whole> struct Batch {
   }
 
   /// Row p of an array with rows of `size` numbers.
-  template <int size> KERF_INLINE Row4 row(const double* array, std::uint32_t p) const {
-    const double* from = array + static_cast<std::size_t>(p) * size;
+  template <int size> KERF_INLINE Row4 row(const double* array, std::size_t p) const {
+    const double* from = array + p * size;
     if (whole)
       return load_row4(from);
     Row4 row{};
@@ -83,29 +81,30 @@ template <int dim, bool whole> struct Batch {
   template <int size> KERF_INLINE LaneVector<size> difference(const double* array) const {
     Row4 rows[width];
     for (int l = 0; l < width; ++l)
-      rows[l] = row<size>(array, j[l]) - row<size>(array, i[l]);
+      rows[l] = row<size>(array, index(c.second, l)) - row<size>(array, index(c.first, l));
     return turned<size>(rows);
   }
   template <int size>
-  KERF_INLINE LaneVector<size> gathered(const double* array, const std::uint32_t* p) const {
+  KERF_INLINE LaneVector<size> gathered(const double* array, const std::uint32_t* particle) const {
     if constexpr (size == 1) {
       LaneVector<1> result;
       for (int l = 0; l < width; ++l)
-        result[0][l] = array[p[l]];
+        result[0][l] = array[index(particle, l)];
       return result;
     } else {
       Row4 rows[width];
       for (int l = 0; l < width; ++l)
-        rows[l] = row<size>(array, p[l]);
+        rows[l] = row<size>(array, index(particle, l));
       return turned<size>(rows);
     }
   }
 
-  KERF_INLINE Mask bonded() const {
+  KERF_INLINE Mask flags(const std::uint8_t* column) const {
+    if (whole)
+      return load_flags(column + k);
     Mask mask{};
-    for (int l = 0; l < width; ++l)
-      if (whole || l < count)
-        mask[l] = -static_cast<std::int64_t>(c.bonded[k + static_cast<std::uint32_t>(l)]);
+    for (int l = 0; l < count; ++l)
+      mask[l] = column[k + static_cast<std::uint32_t>(l)] != 0 ? -1 : 0;
     return mask;
   }
 
@@ -120,75 +119,75 @@ private:
   }
 };
 
-/// What the increment has done to a contact. Shear vectors are orthogonal to the normal; in 2D they
-/// are numbers along the normal turned by +90 degrees.
-template <int dim> struct Kinematics {
-  static constexpr int shear_components = ContactView<dim>::shear_components;
-  LaneVector<dim> branch, normal; // at the end of the increment
-  Lanes length, opening;
-  LaneVector<dim> moved;                // of the branch
-  LaneVector<shear_components> carried; // tangential force that came along, N
-  LaneVector<shear_components> slip;    // m
+/// The tangential force at the end of an increment as if nothing gave way, and what it has grown
+/// by. Tangential vectors are orthogonal to the normal; in 2D they are numbers along the normal
+/// turned by +90 degrees.
+template <int dim> struct Shear {
+  static constexpr int size = ContactView<dim>::shear_components;
+  LaneVector<size> trial;  // N
+  LaneVector<size> growth; // N
 };
 
 /// The arms share the branch, so that a rigid rotation of both particles makes no slip.
 template <bool whole>
-KERF_INLINE void follow_shear(const Batch<2, whole>& batch, const Lanes& share, Kinematics<2>& m) {
+KERF_INLINE Shear<2> follow_shear(const Batch<2, whole>& batch, const LaneVector<2>& branch,
+                                  const LaneVector<2>&, const LaneVector<2>& moved,
+                                  const Lanes& share, const Lanes& k_t) {
   const ContactView<2>& c = batch.c;
-  const Lanes turn_i = batch.template gathered<1>(c.rotation, batch.i)[0];
-  const Lanes turn_j = batch.template gathered<1>(c.rotation, batch.j)[0];
-  const Lanes turned = c.scale * (share * turn_i + (1.0 - share) * turn_j);
-  const LaneVector<2> middle = sum(m.branch, broadcast(-c.half), m.moved);
-  const Lanes length = square_root(dot(middle, middle));
-  m.carried[0] = batch.get(c.shear[0]);
-  m.slip[0] = (middle[0] * m.moved[1] - middle[1] * m.moved[0]) / length - length * turned;
+  const Lanes turn_i = batch.template gathered<1>(c.rotation, c.first)[0];
+  const Lanes turn_j = batch.template gathered<1>(c.rotation, c.second)[0];
+  const Lanes turned = c.scale * (turn_j + share * (turn_i - turn_j));
+  const LaneVector<2> middle = sum(branch, broadcast(-c.half), moved);
+  const Lanes length2 = dot(middle, middle);
+  const Lanes slip = inverse_square_root(length2) *
+                     (middle[0] * moved[1] - middle[1] * moved[0] - length2 * turned);
+  const Lanes growth = k_t * slip;
+  return {{{batch.get(c.shear[0]) + growth}}, {{growth}}};
 }
 
-/// The stored force makes the rotation of the branch, the shortest one, and the mean turn of both
-/// particles about it; what slips in the middle of the increment makes half of that.
+/// The stored force F makes the rotation R of the branch, the shortest one, with the mean turn of
+/// both particles about it. The slip s is that of the middle of the increment: half of the growth
+/// makes the rotation too, R (F + k_t s / 2) + k_t s / 2, which is the same there and back.
+///
+/// The rotation has the Gibbs vector t, tan(angle / 2) along its axis: b' - b = t x (b' + b) for a
+/// branch that keeps its length.
 template <bool whole>
-KERF_INLINE void follow_shear(const Batch<3, whole>& batch, const Lanes& share, Kinematics<3>& m) {
+KERF_INLINE Shear<3> follow_shear(const Batch<3, whole>& batch, const LaneVector<3>& branch,
+                                  const LaneVector<3>& normal, const LaneVector<3>& moved,
+                                  const Lanes& share, const Lanes& k_t) {
   const ContactView<3>& c = batch.c;
-  const LaneVector<3> turn_i = batch.template gathered<3>(c.rotation, batch.i);
-  const LaneVector<3> turn_j = batch.template gathered<3>(c.rotation, batch.j);
-  const LaneVector<3> old_branch = sum(m.branch, broadcast(-1.0), m.moved);
-  const LaneVector<3> middle = sum(m.branch, broadcast(-c.half), m.moved);
-  const LaneVector<3>& n = m.normal;
+  const LaneVector<3> turn_i = batch.template gathered<3>(c.rotation, c.first);
+  const LaneVector<3> turn_j = batch.template gathered<3>(c.rotation, c.second);
+  const LaneVector<3> middle = sum(branch, broadcast(-0.5), moved);
+  const Lanes inverse_middle2 = inverse(dot(middle, middle));
 
   LaneVector<3> turned;
   for (int a = 0; a < 3; ++a)
     turned[a] = c.scale * (turn_j[a] + share * (turn_i[a] - turn_j[a]));
-  const Lanes middle2 = dot(middle, middle);
-  const Lanes inverse_old = 1.0 / square_root(dot(old_branch, old_branch));
-  const Lanes inverse_middle = 1.0 / square_root(middle2);
-  const LaneVector<3> n_old = scaled(inverse_old, old_branch);
-  const LaneVector<3> n_middle = scaled(inverse_middle, middle);
+  const bool at_end = c.half == 0.0;
+  const LaneVector<3>& lever = at_end ? branch : middle;
+  const Lanes inverse_lever2 = at_end ? inverse(dot(branch, branch)) : inverse_middle2;
+  LaneVector<3> slip = sum(moved, broadcast(-1.0), cross(turned, lever));
+  slip = sum(slip, -inverse_lever2 * dot(moved, lever), lever);
 
-  LaneVector<3> slip = sum(m.moved, broadcast(-1.0), cross(turned, middle));
-  slip = sum(slip, -dot(slip, n_middle), n_middle);
-  LaneVector<3> mean_turn;
-  for (int a = 0; a < 3; ++a)
-    mean_turn[a] = turn_i[a] + turn_j[a];
-  const Lanes t = 0.25 * c.scale * dot(mean_turn, n_middle); // tangent of half the angle
-  const Lanes t_slip = c.half * t;
-
-  // Turn v from the unit vector a to n, then by 2 atan t about n; all divisions in one.
+  const Lanes half_inverse = 0.5 * inverse_middle2;
+  const Lanes spin = 0.5 * c.scale * half_inverse * (dot(turn_i, middle) + dot(turn_j, middle));
+  const LaneVector<3> t = sum(scaled(half_inverse, cross(middle, moved)), spin, middle);
   const LaneVector<3> force = {
       {batch.get(c.shear[0]), batch.get(c.shear[1]), batch.get(c.shear[2])}};
-  const Lanes d_force = 1.0 + dot(n_old, n), d_slip = 1.0 + dot(n_middle, n);
-  const Lanes e_force = 1.0 + t * t, e_slip = 1.0 + t_slip * t_slip;
-  const Lanes d = d_force * d_slip, e = e_force * e_slip;
-  const Lanes inverse = 1.0 / (d * e);
-  const auto turn = [&](const LaneVector<3>& v, const LaneVector<3>& from, const Lanes& inverse_d,
-                        const Lanes& tangent, const Lanes& inverse_e) {
-    const Lanes part = -dot(v, n) * inverse_d;
-    const LaneVector<3> u = sum(sum(v, part, from), part, n);
-    return sum(scaled((1.0 - tangent * tangent) * inverse_e, u), 2.0 * tangent * inverse_e,
-               cross(n, u));
-  };
-  const Lanes inverse_d = inverse * e, inverse_e = inverse * d;
-  m.carried = turn(force, n_old, inverse_d * d_slip, t, inverse_e * e_slip);
-  m.slip = turn(slip, n_middle, inverse_d * d_force, t_slip, inverse_e * e_force);
+  const LaneVector<3> G = sum(force, c.half * k_t, slip);
+  const LaneVector<3> tG = cross(t, G);
+  LaneVector<3> trial = sum(tG, broadcast(1.0), cross(t, tG));
+  trial = sum(G, 2.0 * inverse(1.0 + dot(t, t)), trial);
+  trial = sum(trial, (1.0 - c.half) * k_t, slip);
+  return {sum(trial, -dot(trial, normal), normal), scaled(k_t, slip)};
+}
+
+template <class Row> KERF_INLINE void add(double* loads, std::size_t row, const Row& load) {
+  Row value;
+  std::memcpy(&value, loads + row * (sizeof(Row) / 8), sizeof value);
+  value += load;
+  std::memcpy(loads + row * (sizeof(Row) / 8), &value, sizeof value);
 }
 
 /// Adds force F to the load of the first particle and -F to that of the second, and shares the
@@ -196,39 +195,51 @@ KERF_INLINE void follow_shear(const Batch<3, whole>& batch, const Lanes& share, 
 template <bool whole>
 KERF_INLINE void scatter(const Batch<2, whole>& batch, const LaneVector<2>& F, const Lanes& couple,
                          const Lanes& share) {
+  const ContactView<2>& c = batch.c;
   const Lanes on_first = share * couple;
   const Lanes first[4] = {F[0], F[1], on_first, Lanes{}};
   const Lanes second[4] = {-F[0], -F[1], couple - on_first, Lanes{}};
-  Row4 row_i[width], row_j[width];
-  to_rows(first, row_i);
-  to_rows(second, row_j);
+  Row4 row_first[width], row_second[width];
+  to_rows(first, row_first);
+  to_rows(second, row_second);
   for (int l = 0; l < width; ++l)
     if (whole || l < batch.count) {
-      auto* const load_i = reinterpret_cast<Row4*>(batch.c.loads) + batch.i[l];
-      *load_i += row_i[l];
-      auto* const load_j = reinterpret_cast<Row4*>(batch.c.loads) +
-                           batch.c.target[batch.k + static_cast<std::uint32_t>(l)];
-      *load_j += row_j[l];
+      add(c.loads, batch.index(c.first, l), row_first[l]);
+      add(c.loads, batch.index(c.target, l), row_second[l]);
     }
 }
 template <bool whole>
 KERF_INLINE void scatter(const Batch<3, whole>& batch, const LaneVector<3>& F,
                          const LaneVector<3>& couple, const Lanes& share) {
+  const ContactView<3>& c = batch.c;
+#if defined(__AVX512F__)
   const Lanes columns[8] = {F[0], F[1], F[2], couple[0], couple[1], couple[2], share, Lanes{}};
   Row8 rows[width];
   to_rows(columns, rows);
-  const Row8 plus{1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  const Row8 rest{-1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 0.0, 0.0}; // minus the share: of the second
+  const Row8 forces{1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const Row8 rest{-1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 0.0, 0.0}; // of the second, less the share
   for (int l = 0; l < width; ++l)
     if (whole || l < batch.count) {
       const Row8 r = rows[l];
       const Row8 s = __builtin_shufflevector(r, Row8{}, 8, 8, 8, 6, 6, 6, 8, 8);
-      auto* const load_i = reinterpret_cast<Row8*>(batch.c.loads) + batch.i[l];
-      *load_i += r * (plus + s);
-      auto* const load_j = reinterpret_cast<Row8*>(batch.c.loads) +
-                           batch.c.target[batch.k + static_cast<std::uint32_t>(l)];
-      *load_j += r * (rest - s);
+      add(c.loads, batch.index(c.first, l), r * (forces + s));
+      add(c.loads, batch.index(c.target, l), r * (rest - s));
     }
+#else
+  const LaneVector<3> on_first = scaled(share, couple);
+  const LaneVector<3> on_second = sum(couple, broadcast(-1.0), on_first);
+  const Lanes columns[4][4] = {{F[0], F[1], F[2], on_first[0]},
+                               {on_first[1], on_first[2], Lanes{}, Lanes{}},
+                               {-F[0], -F[1], -F[2], on_second[0]},
+                               {on_second[1], on_second[2], Lanes{}, Lanes{}}};
+  for (int part = 0; part < 4; ++part) {
+    Row4 rows[width];
+    to_rows(columns[part], rows);
+    for (int l = 0; l < width; ++l)
+      if (whole || l < batch.count)
+        add(c.loads + part % 2 * 4, 2 * batch.index(part < 2 ? c.first : c.target, l), rows[l]);
+  }
+#endif
 }
 
 /// Bond, and the friction that remains when it is broken; docs in contact_forces.hpp.
@@ -236,7 +247,6 @@ template <int dim, bool whole>
 KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
   constexpr int shears = ContactView<dim>::shear_components;
   const Batch<dim, whole> batch(c, k);
-  Kinematics<dim> m;
   const LaneVector<dim> relative = batch.template difference<dim>(c.displacement);
   LaneVector<dim> B;
   for (int a = 0; a < dim; ++a)
@@ -244,36 +254,39 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
   if (!whole) // lanes beyond the end: any branch that is not zero
     for (int l = batch.count; l < width; ++l)
       B[0][l] = 1.0 - relative[0][l];
-  m.branch = sum(B, broadcast(1.0), relative);
-  m.length = square_root(dot(m.branch, m.branch));
-  // |b| - |B| from the displacement, so that it keeps its digits when it is small.
-  const Lanes reference_length = square_root(dot(B, B));
-  m.opening = dot(relative, sum(relative, broadcast(2.0), B)) / (m.length + reference_length) +
-              (reference_length - batch.get(c.rest_length));
+  const LaneVector<dim> branch = sum(B, broadcast(1.0), relative);
+  const Lanes length2 = dot(branch, branch);
+  const Lanes inverse_length = inverse_square_root(length2);
+  const Lanes length = length2 * inverse_length;
+  // The difference of squares of length and rest length, from the displacement, so that it keeps
+  // its digits when it is small; bonds are free of stress at their reference.
+  const Lanes rest = batch.get(c.rest_length);
+  const Lanes start = select(batch.flags(c.bonded_at_start), Lanes{}, dot(B, B) - rest * rest);
+  const Lanes opening =
+      (dot(relative, sum(relative, broadcast(2.0), B)) + start) * inverse(length + rest);
 
-  const Mask bonded = batch.bonded();
-  if (!any(bonded | (m.opening < 0.0))) { // all open: nothing to do, unless one has just opened
+  const Mask bonded = batch.flags(c.bonded);
+  if (!any(bonded | (opening < 0.0))) // all open: nothing to do, unless one has just opened
     if (!any(batch.get(c.normal_force) != 0.0))
       return;
-  }
 
-  m.normal = scaled(1.0 / m.length, m.branch);
-  m.moved = scaled(broadcast(c.scale), batch.template difference<dim>(c.translation));
+  const LaneVector<dim> n = scaled(inverse_length, branch);
+  const LaneVector<dim> moved =
+      scaled(broadcast(c.scale), batch.template difference<dim>(c.translation));
   const Lanes share = batch.get(c.share);
-  follow_shear(batch, share, m);
-
   const Lanes k_n = batch.get(c.normal_stiffness), k_t = batch.get(c.tangential_stiffness);
-  Lanes F_n = k_n * m.opening;                          // N; eq. 12
-  LaneVector<shears> F_T = sum(m.carried, k_t, m.slip); // N; eq. 13
+  const Shear<dim> shear = follow_shear(batch, branch, n, moved, share, k_t); // eq. 13
+
+  Lanes F_n = k_n * opening; // N; Rojek (2008) eq. 12
+  LaneVector<shears> F_T = shear.trial;
   const Lanes F_T2 = dot(F_T, F_T);
   const Lanes R_n = batch.get(c.tensile_strength), R_t = batch.get(c.shear_strength);
   const Mask breaks = bonded & ((F_n > R_n) | (F_T2 > R_t * R_t)); // eqs 14, 15
-  const Mask free = ~(bonded & ~breaks);
-  const Lanes weight = c.weight != nullptr ? batch.get(c.weight) : broadcast(1.0);
+  const Mask free = ~bonded | breaks;
 
   if (any(free)) {
+    const Lanes weight = c.weight != nullptr ? batch.get(c.weight) : broadcast(1.0);
     const Lanes trial_n = F_n;
-    const LaneVector<shears> trial_T = F_T;
     F_n = select(free & (F_n > 0.0), Lanes{}, F_n);
     const Lanes limit = c.friction * absolute(F_n);
     const Lanes size = square_root(F_T2);
@@ -281,15 +294,16 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
     F_T = scaled(select(slides, limit / size, broadcast(1.0)), F_T);
 
     // Work of a spring that gives way: mean force times the slip that is not elastic.
+    const LaneVector<shears> twice_mean =
+        sum(sum(shear.trial, broadcast(-1.0), shear.growth), broadcast(1.0), F_T);
     const Lanes lost_T =
-        0.5 * weight *
-        dot(sum(m.carried, broadcast(1.0), F_T), sum(trial_T, broadcast(-1.0), F_T)) / k_t;
-    c.friction_loss += kerf::KERF_ISA::sum(select(slides & ~breaks, lost_T, Lanes{}));
+        0.5 * weight * dot(twice_mean, sum(shear.trial, broadcast(-1.0), F_T)) / k_t;
+    c.friction_loss += total(select(slides & ~breaks, lost_T, Lanes{}));
     if (any(breaks)) {
       const Lanes before_n = batch.get(c.normal_force);
       const Lanes lost =
           select(slides, lost_T, Lanes{}) + 0.5 * weight * (before_n + F_n) * (trial_n - F_n) / k_n;
-      c.fracture_loss += kerf::KERF_ISA::sum(select(breaks, lost, Lanes{}));
+      c.fracture_loss += total(select(breaks, lost, Lanes{}));
       for (int l = 0; l < width; ++l)
         if (breaks[l] != 0) {
           const std::uint32_t at = k + static_cast<std::uint32_t>(l);
@@ -303,33 +317,30 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
   for (int a = 0; a < shears; ++a)
     batch.set(c.shear[a], F_T[a]);
 
-  if constexpr (dim == 2) { // F_T acts along (-n_y, n_x); F_n has no arm
-    const LaneVector<2>& n = m.normal;
-    const LaneVector<2> F = {
-        {weight * (F_n * n[0] - F_T[0] * n[1]), weight * (F_n * n[1] + F_T[0] * n[0])}};
-    scatter(batch, F, weight * m.length * F_T[0], share);
-  } else {
-    const LaneVector<3> F = scaled(weight, sum(F_T, F_n, m.normal)); // eq. 11
-    scatter(batch, F, scaled(weight, cross(m.branch, F_T)), share);
+  if (c.weight != nullptr) {
+    const Lanes weight = batch.get(c.weight);
+    F_n *= weight;
+    F_T = scaled(weight, F_T);
   }
-}
-
-/// True when a contact of the batch joins the last particle.
-template <int dim> KERF_INLINE bool reaches_the_end(const ContactView<dim>& c, std::uint32_t k) {
-  bool reaches = false;
-  for (int l = 0; l < width; ++l)
-    reaches |= c.second[k + static_cast<std::uint32_t>(l)] + 1 == c.particles;
-  return reaches;
+  if constexpr (dim == 2) { // F_T acts along (-n_y, n_x); F_n has no arm
+    const LaneVector<2> F = {{F_n * n[0] - F_T[0] * n[1], F_n * n[1] + F_T[0] * n[0]}};
+    scatter(batch, F, length * F_T[0], share);
+  } else {
+    scatter(batch, sum(F_T, F_n, n), cross(branch, F_T), share); // eq. 11
+  }
 }
 
 } // namespace
 
-template <int dim> void bond_kernel(ContactView<dim>& c) {
+template <int dim> void bond_kernel(ContactView<dim>& view) {
+  ContactView<dim> c = view; // a copy: nothing else can change its constants
   for (std::uint32_t k = c.begin; k < c.end; k += width)
-    if (c.end - k >= width && !reaches_the_end(c, k))
+    if (c.end - k >= width && !any_is(c.second + k, c.particles - 1))
       bond_or_friction<dim, true>(c, k);
     else
       bond_or_friction<dim, false>(c, k);
+  view.friction_loss += c.friction_loss;
+  view.fracture_loss += c.fracture_loss;
 }
 
 template void bond_kernel<2>(ContactView<2>&);

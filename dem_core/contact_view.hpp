@@ -21,6 +21,7 @@ template <int dim> struct ContactView {
   const double *normal_stiffness, *tangential_stiffness, *tensile_strength, *shear_strength;
   const double* weight; // null: one everywhere
   std::uint8_t* bonded;
+  const std::uint8_t* bonded_at_start;
   double* normal_force;
   double* shear[shear_components];
 
