@@ -34,20 +34,25 @@ template <int dim> void resize(Contacts<dim>& c, std::size_t count) {
   c.reference_branch.resize(count);
   c.rest_length.resize(count);
   c.share.resize(count);
-  c.normal_stiffness.resize(count);
-  c.tangential_stiffness.resize(count);
-  c.tensile_strength.resize(count);
-  c.shear_strength.resize(count);
   c.bonded.resize(count);
   c.bonded_at_start.resize(count);
   c.normal_force.resize(count);
   c.shear_force.resize(count);
 }
 
+/// Constants that all contacts share, before the list has any.
+template <int dim> void set_constants(Contacts<dim>& c, const Material& material) {
+  c.normal_stiffness.set_all(material.normal_stiffness);
+  c.tangential_stiffness.set_all(material.tangential_stiffness);
+  c.tensile_strength.set_all(material.tensile_strength);
+  c.shear_strength.set_all(material.shear_strength);
+  c.weight.set_all(1.0);
+}
+
 /// A pair without bond or history; it is free of stress when the surfaces just touch.
 template <int dim>
 void set_new(Contacts<dim>& c, std::size_t k, Pair pair, const Particles<dim>& p,
-             const Material& material, const Period<dim>& period) {
+             const Period<dim>& period) {
   const auto [i, j] = pair;
   const Vec<dim> relative = p.displacement[j] - p.displacement[i];
   c.first[k] = i;
@@ -55,10 +60,6 @@ void set_new(Contacts<dim>& c, std::size_t k, Pair pair, const Particles<dim>& p
   c.reference_branch.set(k, period.shortest(p.reference[j] - p.reference[i] + relative) - relative);
   c.rest_length[k] = p.radius[i] + p.radius[j];
   c.share[k] = p.radius[i] / (p.radius[i] + p.radius[j]);
-  c.normal_stiffness[k] = material.normal_stiffness;
-  c.tangential_stiffness[k] = material.tangential_stiffness;
-  c.tensile_strength[k] = material.tensile_strength;
-  c.shear_strength[k] = material.shear_strength;
   c.bonded[k] = 0;
   c.bonded_at_start[k] = 0;
   c.normal_force[k] = 0.0;
@@ -73,10 +74,6 @@ void set_copy(Contacts<dim>& c, std::size_t k, const Contacts<dim>& from, std::s
   c.reference_branch.set(k, from.reference_branch[old]);
   c.rest_length[k] = from.rest_length[old];
   c.share[k] = from.share[old];
-  c.normal_stiffness[k] = from.normal_stiffness[old];
-  c.tangential_stiffness[k] = from.tangential_stiffness[old];
-  c.tensile_strength[k] = from.tensile_strength[old];
-  c.shear_strength[k] = from.shear_strength[old];
   c.bonded[k] = from.bonded[old];
   c.bonded_at_start[k] = from.bonded_at_start[old];
   c.normal_force[k] = from.normal_force[old];
@@ -133,9 +130,9 @@ template <int dim> std::size_t Contacts<dim>::bonds() const noexcept {
 }
 
 template <int dim> double Contacts<dim>::memory() const {
-  constexpr std::size_t numbers = dim + 7 + rotations<dim>;
+  constexpr std::size_t numbers = dim + 3 + rotations<dim>;
   return static_cast<double>(size() * (numbers * sizeof(double) + 3 * sizeof(std::uint32_t) + 2) +
-                             weight.size() * sizeof(double) +
+                             weight.each().size() * sizeof(double) +
                              waiting_rows() * 2 * sizeof(std::uint32_t));
 }
 
@@ -145,6 +142,7 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
   const double reach = std::max(skin, gap_tolerance * 2.0 * largest);
   Contacts<dim> c;
+  set_constants(c, material);
   const std::vector<Pair> pairs = pairs_within(particles, reach, period);
   resize(c, pairs.size());
   std::size_t count = 0;
@@ -157,7 +155,7 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
     const bool bonded = distance - contact_distance <= gap_tolerance * contact_distance;
     if (!bonded && distance - contact_distance > skin)
       continue;
-    set_new(c, count, pair, particles, material, period);
+    set_new(c, count, pair, particles, period);
     if (bonded) {
       c.bonded[count] = c.bonded_at_start[count] = 1;
       c.rest_length[count] = c.reference_branch[count].norm();
@@ -190,25 +188,27 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
     entries.push_back({*pair});
 
   Contacts<dim> renewed;
+  set_constants(renewed, material);
   resize(renewed, entries.size());
   const auto count = static_cast<std::int64_t>(entries.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t k = 0; k < count; ++k)
     if (entries[k].old == none)
-      set_new(renewed, k, entries[k].pair, particles, material, period);
+      set_new(renewed, k, entries[k].pair, particles, period);
     else
       set_copy(renewed, k, contacts, entries[k].old);
   renewed.losses = contacts.losses;
   arrange(renewed, particles.size());
-  if (!contacts.weight.empty())
+  if (!contacts.weight.is_uniform())
     blend(renewed, particles);
   contacts = std::move(renewed);
 }
 
 template <int dim> void blend(Contacts<dim>& contacts, const Particles<dim>& particles) {
-  contacts.weight.resize(contacts.size());
+  std::vector<double> weight(contacts.size());
   for (std::size_t k = 0; k < contacts.size(); ++k)
-    contacts.weight[k] = weight_of(particles, contacts.first[k], contacts.second[k]);
+    weight[k] = weight_of(particles, contacts.first[k], contacts.second[k]);
+  contacts.weight.set_each(std::move(weight));
 }
 
 template <int dim> Incidence incidence(const Contacts<dim>& c, std::size_t particles) {

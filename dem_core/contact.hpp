@@ -32,6 +32,25 @@ template <int size> struct Columns {
   }
 };
 
+/// A constant of the contacts: one number for all of them until they differ.
+class PerContact {
+public:
+  double operator[](std::size_t k) const noexcept { return each_.empty() ? all_ : each_[k]; }
+  bool is_uniform() const noexcept { return each_.empty(); }
+  double all() const noexcept { return all_; }
+  std::span<const double> each() const noexcept { return each_; }
+
+  void set_all(double value) {
+    all_ = value;
+    each_.clear();
+  }
+  void set_each(std::vector<double> values) { each_ = std::move(values); }
+
+private:
+  double all_ = 0.0;
+  std::vector<double> each_;
+};
+
 /// Particles are worked on in blocks of a fixed size, never of the number of threads, so that sums
 /// have the same bits for any number of them.
 inline constexpr std::uint32_t particles_per_block = 1024;
@@ -46,17 +65,18 @@ struct ContactLosses {
 template <int dim> struct Contacts {
   // One entry a contact.
   std::vector<std::uint32_t> first, second;
-  Columns<dim> reference_branch;   // x_j - x_i of this image, less u_j - u_i, m
-  std::vector<double> rest_length; // centre distance without normal force, m
-  std::vector<double> share;       // r_i / (r_i + r_j), part of the branch that is arm of i
-  std::vector<double> normal_stiffness, tangential_stiffness; // k_n, k_t, N/m
-  std::vector<double> tensile_strength, shear_strength;       // R_n, R_t, N
-  std::vector<double> weight;                                 // w_c; empty: one everywhere
-  std::vector<std::uint8_t> bonded;                           // holds tension
-  std::vector<std::uint8_t> bonded_at_start;                  // stays in the list for ever
-  std::vector<double> normal_force;                           // F_n, without weight, N
+  Columns<dim> reference_branch;    // x_j - x_i of this image, less u_j - u_i, m
+  std::vector<double> rest_length;  // centre distance without normal force, m
+  std::vector<double> share;        // r_i / (r_i + r_j), part of the branch that is arm of i
+  std::vector<std::uint8_t> bonded; // holds tension
+  std::vector<std::uint8_t> bonded_at_start; // stays in the list for ever
+  std::vector<double> normal_force;          // F_n, without weight, N
   /// F_T on the first, without weight, N; in 2D along the normal turned by +90 degrees.
   Columns<rotations<dim>> shear_force;
+
+  PerContact normal_stiffness, tangential_stiffness; // k_n, k_t, N/m
+  PerContact tensile_strength, shear_strength;       // R_n, R_t, N
+  PerContact weight;                                 // w_c, one until blended
 
   // A block of particles owns the contacts of which they are the first. What a contact gives to a
   // particle of another block waits in a row behind those of the particles: block by block nobody

@@ -26,6 +26,10 @@ void append(void* list, std::uint32_t contact, BreakMode mode, double energy) {
   static_cast<std::vector<Break>*>(list)->push_back({contact, mode, energy});
 }
 
+ContactConstant constant(const PerContact& values) {
+  return {values.is_uniform() ? nullptr : values.each().data(), values.all()};
+}
+
 /// The view of all contacts, of no block in particular.
 template <int dim>
 ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increment<dim>& increment,
@@ -38,11 +42,11 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
     view.reference_branch[a] = c.reference_branch.of[a].data();
   view.rest_length = c.rest_length.data();
   view.share = c.share.data();
-  view.normal_stiffness = c.normal_stiffness.data();
-  view.tangential_stiffness = c.tangential_stiffness.data();
-  view.tensile_strength = c.tensile_strength.data();
-  view.shear_strength = c.shear_strength.data();
-  view.weight = c.weight.empty() ? nullptr : c.weight.data();
+  view.normal_stiffness = constant(c.normal_stiffness);
+  view.tangential_stiffness = constant(c.tangential_stiffness);
+  view.tensile_strength = constant(c.tensile_strength);
+  view.shear_strength = constant(c.shear_strength);
+  view.weight = constant(c.weight);
   view.bonded = c.bonded.data();
   view.bonded_at_start = c.bonded_at_start.data();
   view.normal_force = c.normal_force.data();

@@ -44,21 +44,24 @@ KERF_INLINE LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) 
 /// whose numbers nothing may be read.
 template <int dim, bool whole> struct Batch {
   const ContactView<dim>& c;
-  std::uint32_t k;
+  std::size_t k;
   int count;
 
-  KERF_INLINE Batch(const ContactView<dim>& view, std::uint32_t first_contact)
+  KERF_INLINE Batch(const ContactView<dim>& view, std::size_t first_contact)
       : c(view), k(first_contact),
         count(whole || view.end - k >= width ? width : static_cast<int>(view.end - k)) {}
 
   /// An index of lane l; beyond the end that of the last contact.
   KERF_INLINE std::size_t index(const std::uint32_t* column, int l) const {
-    return column[k + static_cast<std::uint32_t>(whole || l < count ? l : count - 1)];
+    return column[k + static_cast<std::size_t>(whole || l < count ? l : count - 1)];
   }
 
   /// A number of each contact.
   KERF_INLINE Lanes get(const double* column) const {
     return whole ? load(column + k) : load_some(column + k, count);
+  }
+  KERF_INLINE Lanes get(const dem::ContactConstant& constant) const {
+    return constant.each != nullptr ? get(constant.each) : broadcast(constant.all);
   }
   KERF_INLINE void set(double* column, const Lanes& value) const {
     if (whole)
@@ -104,7 +107,7 @@ template <int dim, bool whole> struct Batch {
       return load_flags(column + k);
     Mask mask{};
     for (int l = 0; l < count; ++l)
-      mask[l] = column[k + static_cast<std::uint32_t>(l)] != 0 ? -1 : 0;
+      mask[l] = column[k + static_cast<std::size_t>(l)] != 0 ? -1 : 0;
     return mask;
   }
 
@@ -244,7 +247,7 @@ KERF_INLINE void scatter(const Batch<3, whole>& batch, const LaneVector<3>& F,
 
 /// Bond, and the friction that remains when it is broken; docs in contact_forces.hpp.
 template <int dim, bool whole>
-KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
+KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::size_t k) {
   constexpr int shears = ContactView<dim>::shear_components;
   const Batch<dim, whole> batch(c, k);
   const LaneVector<dim> relative = batch.template difference<dim>(c.displacement);
@@ -285,7 +288,7 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
   const Mask free = ~bonded | breaks;
 
   if (any(free)) {
-    const Lanes weight = c.weight != nullptr ? batch.get(c.weight) : broadcast(1.0);
+    const Lanes weight = batch.get(c.weight);
     const Lanes trial_n = F_n;
     F_n = select(free & (F_n > 0.0), Lanes{}, F_n);
     const Lanes limit = c.friction * absolute(F_n);
@@ -306,10 +309,10 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
       c.fracture_loss += total(select(breaks, lost, Lanes{}));
       for (int l = 0; l < width; ++l)
         if (breaks[l] != 0) {
-          const std::uint32_t at = k + static_cast<std::uint32_t>(l);
+          const std::size_t at = k + static_cast<std::size_t>(l);
           c.bonded[at] = 0;
-          c.on_break(c.breaks, at, trial_n[l] > R_n[l] ? BreakMode::tension : BreakMode::shear,
-                     lost[l]);
+          c.on_break(c.breaks, static_cast<std::uint32_t>(at),
+                     trial_n[l] > R_n[l] ? BreakMode::tension : BreakMode::shear, lost[l]);
         }
     }
   }
@@ -317,7 +320,7 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
   for (int a = 0; a < shears; ++a)
     batch.set(c.shear[a], F_T[a]);
 
-  if (c.weight != nullptr) {
+  if (c.weight.each != nullptr || c.weight.all != 1.0) {
     const Lanes weight = batch.get(c.weight);
     F_n *= weight;
     F_T = scaled(weight, F_T);
@@ -334,7 +337,7 @@ KERF_INLINE void bond_or_friction(ContactView<dim>& c, std::uint32_t k) {
 
 template <int dim> void bond_kernel(ContactView<dim>& view) {
   ContactView<dim> c = view; // a copy: nothing else can change its constants
-  for (std::uint32_t k = c.begin; k < c.end; k += width)
+  for (std::size_t k = c.begin; k < c.end; k += width)
     if (c.end - k >= width && !any_is(c.second + k, c.particles - 1))
       bond_or_friction<dim, true>(c, k);
     else

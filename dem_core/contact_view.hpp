@@ -1,25 +1,32 @@
 // What the kernels of the contact forces see of the contacts: pointers and plain numbers.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace kerf::dem {
 
 enum class BreakMode : std::uint8_t { tension, shear };
 
+/// A constant of the contacts: one for all, or one for each.
+struct ContactConstant {
+  const double* each; // null: `all` counts
+  double all;
+};
+
 /// The contacts of one block and the particles they join. The kernels are compiled once for every
 /// set of instructions and must not share inline functions with anything else, hence no classes.
 template <int dim> struct ContactView {
   static constexpr int shear_components = dim == 2 ? 1 : 3;
 
-  std::uint32_t begin, end; // contacts of this block
+  std::size_t begin, end; // contacts of this block
 
   // One entry a contact; see Contacts.
   const std::uint32_t *first, *second, *target;
   const double* reference_branch[dim];
   const double *rest_length, *share;
-  const double *normal_stiffness, *tangential_stiffness, *tensile_strength, *shear_strength;
-  const double* weight; // null: one everywhere
+  ContactConstant normal_stiffness, tangential_stiffness, tensile_strength, shear_strength;
+  ContactConstant weight;
   std::uint8_t* bonded;
   const std::uint8_t* bonded_at_start;
   double* normal_force;

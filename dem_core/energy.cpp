@@ -46,7 +46,7 @@ template <int dim> double elastic_energy(const Contacts<dim>& c) {
     const double energy =
         half_square_over(F_n * F_n, c.normal_stiffness[k]) +
         half_square_over(c.shear_force[k].squaredNorm(), c.tangential_stiffness[k]);
-    return c.weight.empty() ? energy : c.weight[k] * energy;
+    return c.weight[k] * energy;
   });
 }
 

@@ -28,8 +28,8 @@ Acceleration<dim> acceleration(const Particles<dim>& particles, const Loads<dim>
   Vec<dim> force = loads.own[i].force;
   if (!loads.interface_force.empty())
     force += loads.interface_force[i];
-  return {force / particles.mass[i],                   // Rojek (2008) eq. 3
-          loads.own[i].moment / particles.inertia[i]}; // eq. 6
+  return {force * (1.0 / particles.mass[i]),                   // Rojek (2008) eq. 3
+          loads.own[i].moment * (1.0 / particles.inertia[i])}; // eq. 6
 }
 
 /// v^(n-1/2) and omega^(n-1/2), as long as the loads are those of the last integrate().

@@ -43,7 +43,7 @@ double row_sum(const Contacts<dim>& c, const Incidence& incidence, const Particl
     const double lever = length / (p.radius[c.first[k]] + p.radius[c.second[k]]);
     const Eigen::Matrix<double, dim, dim> normal = n * n.transpose();
     const Eigen::Matrix<double, dim, dim> stiffness =
-        (c.weight.empty() ? 1.0 : c.weight[k]) *
+        c.weight[k] *
         (c.normal_stiffness[k] * normal +
          c.tangential_stiffness[k] * (Eigen::Matrix<double, dim, dim>::Identity() - normal));
     Kinematics<dim> self = rolling<dim>(n, lever), other = self;

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -71,10 +70,17 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
   std::vector<Vec<dim>> tangential_force(c.size());
   for (std::size_t k = 0; k < c.size(); ++k)
     tangential_force[k] = shear_force(c, p, k);
-  const std::vector<double> ones(std::max(p.size(), c.size()), 1.0); // where nothing is blended
-  const auto weights = [&](const std::vector<double>& weight, std::size_t count) {
-    return std::span<const double>(weight.empty() ? ones : weight).first(count);
+  const auto expanded = [&](const PerContact& constant) {
+    std::vector<double> values(c.size());
+    for (std::size_t k = 0; k < c.size(); ++k)
+      values[k] = constant[k];
+    return values;
   };
+  const std::vector<double> normal_stiffness = expanded(c.normal_stiffness);
+  const std::vector<double> tangential_stiffness = expanded(c.tangential_stiffness);
+  const std::vector<double> contact_weight = expanded(c.weight);
+  const std::vector<double> weight =
+      p.weight.empty() ? std::vector<double>(p.size(), 1.0) : p.weight;
 
   Grid particles{.name = "particles",
                  .positions = flat(position),
@@ -89,7 +95,7 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
                             {"displacement", dim, flat(p.displacement)},
                             {"velocity", dim, flat(p.velocity)},
                             {"angular_velocity", rotations<dim>, flat(p.angular_velocity)},
-                            {"weight", 1, weights(p.weight, p.size())},
+                            {"weight", 1, std::span<const double>(weight)},
                             {"boundary", 1, std::span<const std::int64_t>(boundary)}};
   Grid contacts{.name = "contacts",
                 .positions = {},
@@ -102,9 +108,9 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
       {"bonded", 1, std::span<const std::int64_t>(bonded)},
       {"normal_force", 1, std::span<const double>(c.normal_force)},
       {"tangential_force", dim, flat(tangential_force)},
-      {"normal_stiffness", 1, std::span<const double>(c.normal_stiffness)},
-      {"tangential_stiffness", 1, std::span<const double>(c.tangential_stiffness)},
-      {"weight", 1, weights(c.weight, c.size())}};
+      {"normal_stiffness", 1, std::span<const double>(normal_stiffness)},
+      {"tangential_stiffness", 1, std::span<const double>(tangential_stiffness)},
+      {"weight", 1, std::span<const double>(contact_weight)}};
   const Grid grids[] = {std::move(particles), std::move(contacts)};
   frames_.write(step, time, grids);
 }

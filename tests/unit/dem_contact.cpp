@@ -29,7 +29,7 @@ public:
     dem::compute_contact_forces(contacts_, particles_, {translation, rotation, 1.0},
                                 dem::ShearIncrement::midpoint, friction_, loads_);
   }
-  void set_weight(double weight) { contacts_.weight = {weight}; }
+  void set_weight(double weight) { contacts_.weight.set_all(weight); }
   bool bonded() const { return contacts_.bonded[0]; }
   double normal() const { return contacts_.normal_force[0]; }
   double shear() const { return contacts_.shear_force[0].norm(); }
