@@ -9,7 +9,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 # room -> rooms that it may include from, beside itself; the longest matching path names the room
 ALLOWED = {
     "common": set(),
-    "dem_core": {"common/vec.hpp", "common/ordered_sum.hpp"},
+    "dem_core": {"common/vec.hpp", "common/ordered_sum.hpp", "common/surface.hpp",
+                 "common/surface_topology.hpp", "common/facet_contact.hpp", "common/facet_grid.hpp"},
     "fem_core": {"common/vec.hpp", "common/ordered_sum.hpp"},
     "dem_core/program": {"dem_core", "common", "coupler/participant", "coupler/channel", "coupler/protocol"},
     "fem_core/program": {"fem_core", "common", "coupler/participant", "coupler/channel", "coupler/protocol"},
