@@ -204,35 +204,38 @@ void find_contacts(const Vec<dim>& centre, double radius, std::span<const Vec<di
 }
 
 template <int dim>
-std::uint32_t
-continued_contact(const FacetContact<dim>& contact, std::span<const FacetContact<dim>> before,
-                  std::span<const FacetContact<dim>> now, const SurfaceTopology<dim>& topology) {
+void continue_contacts(std::span<const FacetContact<dim>> before,
+                       std::span<const FacetContact<dim>> now, const SurfaceTopology<dim>& topology,
+                       std::span<std::uint32_t> from) {
+  assert(from.size() == now.size());
   constexpr double least_cosine = 0.9; // rolling turns the normal by far less in a step
-  const auto is = [](const Feature& feature) {
-    return [feature](const FacetContact<dim>& other) { return other.feature == feature; };
-  };
-  if (const auto same = std::ranges::find_if(before, is(contact.feature)); same != before.end())
-    return static_cast<std::uint32_t>(same - before.begin());
-  std::uint32_t best = no_contact;
-  double best_cosine = least_cosine;
-  for (std::uint32_t k = 0; k < before.size(); ++k) {
-    const double cosine = before[k].normal.dot(contact.normal);
-    if (cosine > best_cosine && std::ranges::none_of(now, is(before[k].feature)) &&
-        share_a_vertex<dim>(before[k].feature, contact.feature, topology)) {
-      best = k;
-      best_cosine = cosine;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const auto same = std::ranges::find(before, now[k].feature, &FacetContact<dim>::feature);
+    from[k] = same == before.end() ? no_contact : static_cast<std::uint32_t>(same - before.begin());
+  }
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (from[k] != no_contact)
+      continue;
+    double best = least_cosine;
+    for (std::uint32_t b = 0; b < before.size(); ++b) {
+      const double cosine = before[b].normal.dot(now[k].normal);
+      const bool is_free = std::ranges::find(from, b) == from.end();
+      if (cosine > best && is_free &&
+          share_a_vertex<dim>(before[b].feature, now[k].feature, topology)) {
+        from[k] = b;
+        best = cosine;
+      }
     }
   }
-  return best;
 }
 
 #define KERF_INSTANTIATE(dim)                                                                      \
   template void find_contacts<dim>(const Vec<dim>&, double, std::span<const Vec<dim>>,             \
                                    const SurfaceTopology<dim>&, std::span<const std::uint32_t>,    \
                                    std::vector<FacetContact<dim>>&);                               \
-  template std::uint32_t continued_contact<dim>(                                                   \
-      const FacetContact<dim>&, std::span<const FacetContact<dim>>,                                \
-      std::span<const FacetContact<dim>>, const SurfaceTopology<dim>&);
+  template void continue_contacts<dim>(std::span<const FacetContact<dim>>,                         \
+                                       std::span<const FacetContact<dim>>,                         \
+                                       const SurfaceTopology<dim>&, std::span<std::uint32_t>);
 KERF_INSTANTIATE(2)
 KERF_INSTANTIATE(3)
 

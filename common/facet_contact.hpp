@@ -59,14 +59,14 @@ void find_contacts(const Vec<dim>& centre, double radius, std::span<const Vec<di
 /// Marks a contact that continues none.
 inline constexpr std::uint32_t no_contact = 0xffffffff;
 
-/// Which contact of the step before a contact of now continues, so that its friction goes on as the
-/// sphere rolls from one feature to the next: the one with the same feature, else one whose feature
-/// has been left for one that shares a vertex, with nearly the same normal.
+/// Which contacts of the step before those of now continue, so that friction goes on as the sphere
+/// rolls from one feature to the next: the one with the same feature, else one whose feature has
+/// been left for one that shares a vertex, with nearly the same normal. None is continued twice.
 /// @param before, now  all contacts of the sphere with the surface, in the frame of the vertices
-/// @return index into before, or no_contact
+/// @param from         [now] receives the index into before, or no_contact
 template <int dim>
-std::uint32_t
-continued_contact(const FacetContact<dim>& contact, std::span<const FacetContact<dim>> before,
-                  std::span<const FacetContact<dim>> now, const SurfaceTopology<dim>& topology);
+void continue_contacts(std::span<const FacetContact<dim>> before,
+                       std::span<const FacetContact<dim>> now, const SurfaceTopology<dim>& topology,
+                       std::span<std::uint32_t> from);
 
 } // namespace kerf

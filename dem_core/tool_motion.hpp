@@ -70,9 +70,8 @@ template <int dim> struct ToolLoad {
 /// prescribed comes from t_n = n dt and does not drift.
 template <int dim> class ToolMover {
 public:
-  /// @throws std::invalid_argument for a number that is not finite, a direction or an axis of
-  /// length
-  ///         zero, a bound, a mass or an inertia that is not positive, a free body without a free
+  /// @throws std::invalid_argument for a number that is not finite, a direction or an axis of no
+  ///         length, a bound, a mass or an inertia that is not positive, a free body without a free
   ///         axis, or a servo along a free axis
   explicit ToolMover(const ToolMotion<dim>& motion);
 

@@ -63,12 +63,13 @@ void ToolShape<dim>::find_contacts(const Vec<dim>& centre, double radius,
 }
 
 template <int dim>
-std::uint32_t ToolShape<dim>::continued_contact(const FacetContact<dim>& contact,
-                                                std::span<const FacetContact<dim>> before,
-                                                std::span<const FacetContact<dim>> now) const {
+void ToolShape<dim>::continue_contacts(std::span<const FacetContact<dim>> before,
+                                       std::span<const FacetContact<dim>> now,
+                                       std::span<std::uint32_t> from) const {
   if (const auto* facets = std::get_if<Facets>(&shape_))
-    return kerf::continued_contact<dim>(contact, before, now, facets->topology);
-  return before.empty() ? no_contact : 0;
+    kerf::continue_contacts<dim>(before, now, facets->topology, from);
+  else if (!now.empty())
+    from[0] = before.empty() ? no_contact : 0;
 }
 
 template <int dim> const Surface<dim>* ToolShape<dim>::surface() const {

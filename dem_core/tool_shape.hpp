@@ -37,10 +37,10 @@ public:
   void find_contacts(const Vec<dim>& centre, double radius, std::span<const std::uint32_t> near,
                      std::vector<FacetContact<dim>>& contacts) const;
 
-  /// The contact before that a contact goes on with, see kerf::continued_contact().
-  std::uint32_t continued_contact(const FacetContact<dim>& contact,
-                                  std::span<const FacetContact<dim>> before,
-                                  std::span<const FacetContact<dim>> now) const;
+  /// Which contacts before those of now go on with, see kerf::continue_contacts().
+  void continue_contacts(std::span<const FacetContact<dim>> before,
+                         std::span<const FacetContact<dim>> now,
+                         std::span<std::uint32_t> from) const;
 
   /// The facets, for output; nothing for a plane.
   const Surface<dim>* surface() const;

@@ -369,6 +369,13 @@ TEST(FacetContact, of_a_centre_on_the_surface_pushes_outwards) {
   }
 }
 
+std::vector<std::uint32_t> past(const Body<3>& body, const Contacts<3>& before,
+                                const Contacts<3>& now) {
+  std::vector<std::uint32_t> from(now.size());
+  continue_contacts<3>(before, now, body.topology, from);
+  return from;
+}
+
 // A ball rolls over a box: flat, over a flat edge, and round a convex edge. Its contact has a past
 // in every step. When it comes to a wall, the contact with the wall has none.
 TEST(FacetContact, continues_its_history_while_the_sphere_rolls_from_feature_to_feature) {
@@ -385,7 +392,7 @@ TEST(FacetContact, continues_its_history_while_the_sphere_rolls_from_feature_to_
     const auto now = box.touch(centre, radius);
     ASSERT_EQ(now.size(), 1U);
     if (!before.empty()) {
-      EXPECT_EQ(continued_contact<3>(now[0], before, now, box.topology), 0U);
+      EXPECT_EQ(past(box, before, now), std::vector{0U});
     }
     if (features.empty() || features.back() != now[0].feature)
       features.push_back(now[0].feature);
@@ -397,8 +404,21 @@ TEST(FacetContact, continues_its_history_while_the_sphere_rolls_from_feature_to_
   const auto floor = room.touch({0.5, 0.101, 0.09}, radius);
   const auto corner = room.touch({0.5, 0.099, 0.09}, radius);
   ASSERT_EQ(corner.size(), 2U);
-  EXPECT_EQ(continued_contact<3>(corner[0], floor, corner, room.topology), 0U);
-  EXPECT_EQ(continued_contact<3>(corner[1], floor, corner, room.topology), no_contact);
+  EXPECT_EQ(past(room, floor, corner), (std::vector{0U, no_contact}));
+}
+
+// Two contacts of now lie beside one of before: the nearer goes on with its history.
+TEST(FacetContact, hands_its_history_to_one_contact_only) {
+  const Body<3> body{sheet(2, [](double u, double v) { return Vec<3>(u, v, 0.0); })};
+  const auto on = [](std::uint32_t facet) {
+    FacetContact<3> contact;
+    contact.feature = {FeatureKind::facet, facet};
+    contact.normal = {0.0, 0.0, -1.0};
+    return contact;
+  };
+  EXPECT_EQ(past(body, {on(0)}, {on(1), on(2)}), (std::vector{0U, no_contact}));
+  EXPECT_EQ(past(body, {on(0)}, {on(1), on(0)}), (std::vector{no_contact, 0U}));
+  EXPECT_EQ(past(body, {on(0), on(3)}, {on(1), on(2)}), (std::vector{0U, 1U}));
 }
 
 template <int dim> void grid_finds_what_comparing_all_finds(const Surface<dim>& surface) {

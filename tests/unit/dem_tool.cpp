@@ -337,8 +337,11 @@ TEST(ToolShape, of_a_plane_is_touched_from_its_free_side_however_deep) {
     EXPECT_NEAR(contacts[0].gap, height - 1.1, 1e-15);
     EXPECT_EQ(contacts[0].normal, Vec<2>(0.0, -1.0));
     EXPECT_LT((contacts[0].point - Vec<2>(3.0, 1.0)).norm(), 1e-15);
-    EXPECT_EQ(floor.continued_contact(contacts[0], contacts, contacts), 0U);
-    EXPECT_EQ(floor.continued_contact(contacts[0], {}, contacts), no_contact);
+    std::uint32_t from = 7;
+    floor.continue_contacts(contacts, contacts, {&from, 1});
+    EXPECT_EQ(from, 0U);
+    floor.continue_contacts({}, contacts, {&from, 1});
+    EXPECT_EQ(from, no_contact);
   }
   EXPECT_EQ(floor.surface(), nullptr);
 }
