@@ -1,17 +1,14 @@
 // Packings as text: one particle a line.
 #pragma once
 
+#include "common/text_file.hpp"
+
 #include <filesystem>
-#include <stdexcept>
 #include <vector>
 
 namespace kerf {
 
-/// A packing file that cannot be used; what() begins with file:line where there is a line.
-class PackingError : public std::runtime_error {
-public:
-  using std::runtime_error::runtime_error;
-};
+using PackingError = FileError;
 
 struct Packing {
   std::vector<double> positions; // [n][dim] m
