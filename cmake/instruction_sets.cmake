@@ -1,7 +1,8 @@
 # kerf_add_kernels(TARGET FILES…) - compiles hot kernels once for every set of instructions, each in
 # the namespace kerf::<set>; common/instruction_set.hpp tells at run time which one to call.
 function(kerf_add_kernels target)
-  set(flags_baseline -march=x86-64 -mtune=generic)
+  # -fno-tree-pre: g++ 12 fails on what partial redundancy elimination makes of masks there.
+  set(flags_baseline -march=x86-64 -mtune=generic -fno-tree-pre)
   set(flags_avx2 -march=x86-64-v3 -mtune=generic)
   set(flags_avx512 -march=x86-64-v4 -mtune=generic -mprefer-vector-width=512)
   foreach(set baseline avx2 avx512)

@@ -99,7 +99,11 @@ KERF_INLINE bool any(const Mask& mask) {
 }
 
 KERF_INLINE Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) {
+#if defined(__AVX512F__)
   return mask ? yes : no;
+#else // g++ 12 fails on some conditions of narrower vectors
+  return (Lanes)((mask & (Mask)yes) | (~mask & (Mask)no));
+#endif
 }
 KERF_INLINE Lanes square_root(const Lanes& x) {
 #if defined(__AVX512F__)

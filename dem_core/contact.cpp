@@ -1,5 +1,7 @@
 #include "dem_core/contact.hpp"
 
+#include "dem_core/contact_constants.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,15 +40,8 @@ template <int dim> void resize(Contacts<dim>& c, std::size_t count) {
   c.bonded_at_start.resize(count);
   c.normal_force.resize(count);
   c.shear_force.resize(count);
-}
-
-/// Constants that all contacts share, before the list has any.
-template <int dim> void set_constants(Contacts<dim>& c, const Material& material) {
-  c.normal_stiffness.set_all(material.normal_stiffness);
-  c.tangential_stiffness.set_all(material.tangential_stiffness);
-  c.tensile_strength.set_all(material.tensile_strength);
-  c.shear_strength.set_all(material.shear_strength);
-  c.weight.set_all(1.0);
+  if (c.law != ContactLaw::linear)
+    c.moment.resize(count);
 }
 
 /// A pair without bond or history; it is free of stress when the surfaces just touch.
@@ -64,6 +59,8 @@ void set_new(Contacts<dim>& c, std::size_t k, Pair pair, const Particles<dim>& p
   c.bonded_at_start[k] = 0;
   c.normal_force[k] = 0.0;
   c.shear_force.set(k, Rot<dim>::Zero());
+  if (c.law != ContactLaw::linear)
+    c.moment.set(k, Rot<dim>::Zero());
 }
 
 /// Contact `old` of another list with all its history.
@@ -78,6 +75,8 @@ void set_copy(Contacts<dim>& c, std::size_t k, const Contacts<dim>& from, std::s
   c.bonded_at_start[k] = from.bonded_at_start[old];
   c.normal_force[k] = from.normal_force[old];
   c.shear_force.set(k, from.shear_force[old]);
+  if (c.law != ContactLaw::linear)
+    c.moment.set(k, from.moment[old]);
 }
 
 /// Fills what follows from the pairs: which block owns what, and where loads wait.
@@ -142,7 +141,7 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
   const double reach = std::max(skin, gap_tolerance * 2.0 * largest);
   Contacts<dim> c;
-  set_constants(c, material);
+  c.law = law_of(material);
   const std::vector<Pair> pairs = pairs_within(particles, reach, period);
   resize(c, pairs.size());
   std::size_t count = 0;
@@ -164,6 +163,8 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
   }
   resize(c, count);
   arrange(c, particles.size());
+  c.weight.set_all(1.0);
+  set_constants(c, particles, material);
   return c;
 }
 
@@ -188,7 +189,7 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
     entries.push_back({*pair});
 
   Contacts<dim> renewed;
-  set_constants(renewed, material);
+  renewed.law = contacts.law;
   resize(renewed, entries.size());
   const auto count = static_cast<std::int64_t>(entries.size());
 #pragma omp parallel for schedule(static)
@@ -199,6 +200,8 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
       set_copy(renewed, k, contacts, entries[k].old);
   renewed.losses = contacts.losses;
   arrange(renewed, particles.size());
+  set_constants(renewed, particles, material);
+  renewed.weight.set_all(1.0);
   if (!contacts.weight.is_uniform())
     blend(renewed, particles);
   contacts = std::move(renewed);
@@ -227,6 +230,19 @@ template <int dim> Incidence incidence(const Contacts<dim>& c, std::size_t parti
     result.entry[next[c.second[k]]++] = 2 * k + 1;
   }
   return result;
+}
+
+template <int dim>
+ContactStiffness stiffness_of(const Contacts<dim>& c, std::size_t k, double opening) {
+  ContactStiffness stiffness{c.normal_stiffness[k], c.tangential_stiffness[k],
+                             c.bending_stiffness[k], c.twisting_stiffness[k]};
+  if (c.law == ContactLaw::hertz_mindlin) {
+    const double root = std::sqrt(std::max(0.0, -opening));
+    stiffness.normal *= 1.5 * root; // of delta^(3/2)
+    stiffness.tangential *= root;
+    stiffness.bending *= root;
+  }
+  return stiffness;
 }
 
 template <int dim>
@@ -259,6 +275,7 @@ Vec<dim> shear_force(const Contacts<dim>& c, const Particles<dim>& particles, st
                                     double, const Period<dim>&);                                   \
   template void blend<dim>(Contacts<dim>&, const Particles<dim>&);                                 \
   template Incidence incidence<dim>(const Contacts<dim>&, std::size_t);                            \
+  template ContactStiffness stiffness_of<dim>(const Contacts<dim>&, std::size_t, double);          \
   template Span<dim> span_of<dim>(const Contacts<dim>&, const Particles<dim>&, std::size_t);       \
   template Vec<dim> shear_force<dim>(const Contacts<dim>&, const Particles<dim>&, std::size_t);
 KERF_INSTANTIATE(2)

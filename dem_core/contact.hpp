@@ -1,6 +1,7 @@
 // The list of contacts with their history, and the kinematics of one contact.
 #pragma once
 
+#include "dem_core/contact_view.hpp"
 #include "dem_core/neighbours.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
@@ -57,7 +58,7 @@ inline constexpr std::uint32_t particles_per_block = 1024;
 
 /// What contacts have dissipated so far, with weight, J.
 struct ContactLosses {
-  double friction = 0.0, fracture = 0.0;
+  double friction = 0.0, fracture = 0.0, viscous = 0.0;
 };
 
 /// Pairs of particles that touch or soon may, ascending by (first, second). The normal points from
@@ -77,6 +78,13 @@ template <int dim> struct Contacts {
   PerContact normal_stiffness, tangential_stiffness; // k_n, k_t, N/m
   PerContact tensile_strength, shear_strength;       // R_n, R_t, N
   PerContact weight;                                 // w_c, one until blended
+
+  ContactLaw law = ContactLaw::linear;
+  // Of laws with dashpots and moments, see contact_constants.hpp.
+  PerContact normal_viscosity, tangential_viscosity; // c_n, c_t, N s/m
+  PerContact bending_stiffness, twisting_stiffness;  // k_b, k_w, N m
+  PerContact bond_lever, rolling_limit;              // 1/m; m
+  Columns<rotations<dim>> moment; // on the first, without weight, N m; empty without moments
 
   // A block of particles owns the contacts of which they are the first. What a contact gives to a
   // particle of another block waits in a row behind those of the particles: block by block nobody
@@ -123,6 +131,14 @@ struct Incidence {
   std::vector<std::uint32_t> offset, entry;
 };
 template <int dim> Incidence incidence(const Contacts<dim>& contacts, std::size_t particles);
+
+/// Stiffness of a contact against small motions from where it is.
+struct ContactStiffness {
+  double normal = 0.0, tangential = 0.0; // N/m
+  double bending = 0.0, twisting = 0.0;  // N m
+};
+template <int dim>
+ContactStiffness stiffness_of(const Contacts<dim>& contacts, std::size_t k, double opening);
 
 /// Where the two particles of a contact are to each other.
 template <int dim> struct Span {

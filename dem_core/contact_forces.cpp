@@ -7,7 +7,7 @@
 // The kernels of contact_kernel.cpp.
 #define KERF_DECLARE(isa)                                                                          \
   namespace kerf::isa {                                                                            \
-  template <int dim> void bond_kernel(dem::ContactView<dim>& contacts);                            \
+  template <int dim> dem::ContactKernel<dim> kernel_of(dem::ContactLaw law);                       \
   }
 KERF_DECLARE(baseline)
 KERF_DECLARE(avx2)
@@ -17,9 +17,10 @@ namespace kerf::dem {
 
 namespace {
 
-template <int dim> ContactKernel<dim> kernel() {
-  return dispatch<ContactKernel<dim>>(baseline::bond_kernel<dim>, avx2::bond_kernel<dim>,
-                                      avx512::bond_kernel<dim>);
+template <int dim> ContactKernel<dim> kernel(ContactLaw law) {
+  using Choose = ContactKernel<dim> (*)(ContactLaw);
+  return dispatch<Choose>(baseline::kernel_of<dim>, avx2::kernel_of<dim>,
+                          avx512::kernel_of<dim>)(law);
 }
 
 void append(void* list, std::uint32_t contact, BreakMode mode, double energy) {
@@ -47,16 +48,25 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
   view.tensile_strength = constant(c.tensile_strength);
   view.shear_strength = constant(c.shear_strength);
   view.weight = constant(c.weight);
+  view.normal_viscosity = constant(c.normal_viscosity);
+  view.tangential_viscosity = constant(c.tangential_viscosity);
+  view.bending_stiffness = constant(c.bending_stiffness);
+  view.twisting_stiffness = constant(c.twisting_stiffness);
+  view.bond_lever = constant(c.bond_lever);
+  view.rolling_limit = constant(c.rolling_limit);
   view.bonded = c.bonded.data();
   view.bonded_at_start = c.bonded_at_start.data();
   view.normal_force = c.normal_force.data();
   for (int a = 0; a < ContactView<dim>::shear_components; ++a)
     view.shear[a] = c.shear_force.of[a].data();
+  for (int a = 0; a < ContactView<dim>::shear_components; ++a)
+    view.moment[a] = c.moment.of[a].data();
   view.particles = static_cast<std::uint32_t>(p.size());
   view.displacement = p.displacement.front().data();
   view.translation = increment.translation.front().data();
   view.rotation = increment.rotation.front().data();
   view.scale = increment.scale;
+  view.rate = increment.time > 0.0 ? 1.0 / increment.time : 0.0;
   view.half = rule == ShearIncrement::midpoint ? 0.5 : 0.0;
   view.friction = friction;
   view.loads = reinterpret_cast<double*>(loads.own.data());
@@ -73,7 +83,7 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
   const std::size_t n = particles.size();
   loads.own.resize(n + contacts.waiting_rows());
   const auto all = view_of(contacts, particles, increment, rule, friction, loads);
-  const ContactKernel<dim> compute = kernel<dim>();
+  const ContactKernel<dim> compute = kernel<dim>(contacts.law);
   const auto blocks = static_cast<std::int64_t>(contacts.blocks());
   std::vector<std::vector<Break>> breaks(contacts.blocks());
   const auto row = [&](std::size_t r) {
@@ -94,6 +104,7 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
       compute(view);
       contacts.losses[b].friction += view.friction_loss;
       contacts.losses[b].fracture += view.fracture_loss;
+      contacts.losses[b].viscous += view.viscous_loss;
     }
 #pragma omp for schedule(static)
     for (std::int64_t b = 0; b < blocks; ++b)

@@ -15,6 +15,7 @@ template <int dim> struct Increment {
   std::span<const Vec<dim>> translation; // [n]
   std::span<const Rot<dim>> rotation;    // [n]
   double scale = 1.0;
+  double time = 0.0; // that it took, s; 0: none, and dashpots do not act
 };
 
 /// Force in N and moment in N m on a particle: one cache line, or half of one in 2D.
@@ -46,6 +47,10 @@ struct Break {
 /// when F_n > R_n (eq. 14) or |F_T| > R_t (eq. 15), without weights; then only compression and
 /// Coulomb friction |F_T| <= mu |F_n| remain. The loss of energy of a step is the mean force times
 /// the slip that is not elastic, which is exact for the trapezoidal work of the scheme.
+///
+/// With ContactLaw::linear_with_moments and hertz_mindlin dashpots add c_n du_n/dt and c_t ds/dt
+/// while a contact carries, the tangential one while it does not slide, and a spring resists the
+/// relative rotation of the particles: see contact_constants.hpp, contact_laws.hpp.
 /// @pre no two centres of a pair coincide
 /// @return the bonds that broke, ascending
 template <int dim>

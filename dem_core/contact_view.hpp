@@ -6,6 +6,9 @@
 
 namespace kerf::dem {
 
+/// Which kernel computes a contact: linear has neither dashpots nor moments and is the fast one.
+enum class ContactLaw : std::uint8_t { linear, linear_with_moments, hertz_mindlin };
+
 enum class BreakMode : std::uint8_t { tension, shear };
 
 /// A constant of the contacts: one for all, or one for each.
@@ -27,21 +30,26 @@ template <int dim> struct ContactView {
   const double *rest_length, *share;
   ContactConstant normal_stiffness, tangential_stiffness, tensile_strength, shear_strength;
   ContactConstant weight;
+  // Of dashpots and moments; not read by ContactLaw::linear.
+  ContactConstant normal_viscosity, tangential_viscosity;
+  ContactConstant bending_stiffness, twisting_stiffness, bond_lever, rolling_limit;
   std::uint8_t* bonded;
   const std::uint8_t* bonded_at_start;
   double* normal_force;
   double* shear[shear_components];
+  double* moment[shear_components];
 
   // One row of dim (or one rotation) a particle.
   std::uint32_t particles;
   const double *displacement, *translation, *rotation;
   double scale;    // of translation and rotation
+  double rate;     // of the increment, one over its time, 1/s; 0: it took none
   double half;     // where the slip is measured: 0.5 in the middle of the increment, 0 at its end
   double friction; // mu
 
   double* loads; // rows of 4 (2D) or 8 (3D): force, moment
 
-  double friction_loss, fracture_loss; // are added to, J
+  double friction_loss, fracture_loss, viscous_loss; // are added to, J
   void (*on_break)(void* list, std::uint32_t contact, BreakMode mode, double energy);
   void* breaks; // the list
 };

@@ -3,6 +3,8 @@
 #include "common/ordered_sum.hpp"
 #include "dem_core/integrate.hpp"
 
+#include <cmath>
+
 namespace kerf::dem {
 
 namespace {
@@ -18,6 +20,18 @@ template <int dim> struct Total {
 
 double half_square_over(double square, double stiffness) {
   return stiffness > 0.0 ? 0.5 * square / stiffness : 0.0;
+}
+
+/// Of bending and, in 3D, twisting.
+template <int dim>
+double energy_of_moment(const Contacts<dim>& c, const Particles<dim>& particles, std::size_t k,
+                        const ContactStiffness& stiffness) {
+  const Rot<dim> moment = c.moment[k];
+  double twist = 0.0; // N m
+  if constexpr (dim == 3)
+    twist = moment.dot(span_of(c, particles, k).normal());
+  return half_square_over(moment.squaredNorm() - twist * twist, stiffness.bending) +
+         half_square_over(twist * twist, stiffness.twisting);
 }
 
 /// Half of the work of a force over the whole step, on each side of t_n.
@@ -40,12 +54,20 @@ double kinetic_energy(const Particles<dim>& p, const Loads<dim>& loads,
   });
 }
 
-template <int dim> double elastic_energy(const Contacts<dim>& c) {
+template <int dim> double elastic_energy(const Contacts<dim>& c, const Particles<dim>& particles) {
   return ordered_sum(c.size(), [&](std::size_t k) {
-    const double F_n = c.normal_force[k];
-    const double energy =
-        half_square_over(F_n * F_n, c.normal_stiffness[k]) +
-        half_square_over(c.shear_force[k].squaredNorm(), c.tangential_stiffness[k]);
+    const double F_n = std::abs(c.normal_force[k]), F_T2 = c.shear_force[k].squaredNorm();
+    double energy = 0.0, opening = 0.0;
+    if (c.law == ContactLaw::hertz_mindlin) { // F_n = k_n delta^(3/2) has the energy 2/5 F_n delta
+      opening = -std::pow(F_n / c.normal_stiffness[k], 2.0 / 3.0);
+      energy = -0.4 * F_n * opening;
+    } else {
+      energy = half_square_over(F_n * F_n, c.normal_stiffness[k]);
+    }
+    const ContactStiffness stiffness = stiffness_of(c, k, opening);
+    energy += half_square_over(F_T2, stiffness.tangential);
+    if (c.law != ContactLaw::linear)
+      energy += energy_of_moment(c, particles, k, stiffness);
     return c.weight[k] * energy;
   });
 }
@@ -102,7 +124,7 @@ StepWork step_work(const Particles<dim>& p, const Loads<dim>& loads, const Bound
 #define KERF_INSTANTIATE(dim)                                                                      \
   template double kinetic_energy<dim>(const Particles<dim>&, const Loads<dim>&,                    \
                                       const Boundary<dim>&, double);                               \
-  template double elastic_energy<dim>(const Contacts<dim>&);                                       \
+  template double elastic_energy<dim>(const Contacts<dim>&, const Particles<dim>&);                \
   template Vec<dim> momentum<dim>(const Particles<dim>&, const Loads<dim>&, const Boundary<dim>&,  \
                                   double);                                                         \
   template StepWork step_work<dim>(const Particles<dim>&, const Loads<dim>&, const Boundary<dim>&, \

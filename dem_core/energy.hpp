@@ -14,10 +14,10 @@ namespace kerf::dem {
 /// dissipations do not take is found in kinetic + elastic: to round-off in a linear system.
 struct Energies {
   double kinetic = 0.0;              // 1/2 v^(n-1/2) . M v^(n+1/2), rotations too
-  double elastic = 0.0;              // sum of w_c (F_n² / k_n + |F_T|² / k_t) / 2
+  double elastic = 0.0;              // of the springs of the contacts, with weight
   double external_work = 0.0;        // of the reactions to prescribed motion
   double interface_work = 0.0;       // of the interface forces
-  double damping_dissipation = 0.0;  //
+  double damping_dissipation = 0.0;  // of damping, and of dashpots to first order in dt
   double friction_dissipation = 0.0; // slip of contacts without bond
   double fracture_dissipation = 0.0; // energy that was stored in bonds when they broke
 };
@@ -26,7 +26,8 @@ struct Energies {
 template <int dim>
 double kinetic_energy(const Particles<dim>& particles, const Loads<dim>& loads,
                       const Boundary<dim>& boundary, double time_step);
-template <int dim> double elastic_energy(const Contacts<dim>& contacts);
+template <int dim>
+double elastic_energy(const Contacts<dim>& contacts, const Particles<dim>& particles);
 
 /// Momentum at t_n, the mean of half a step before and after, N s.
 template <int dim>

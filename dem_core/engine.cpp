@@ -1,6 +1,7 @@
 #include "dem_core/engine.hpp"
 
 #include "common/ordered_sum.hpp"
+#include "dem_core/contact_constants.hpp"
 #include "dem_core/damping.hpp"
 #include "dem_core/initial.hpp"
 #include "dem_core/integrate.hpp"
@@ -23,22 +24,6 @@ namespace {
 double skin_width(std::span<const double> radius) {
   return 0.2 * std::accumulate(radius.begin(), radius.end(), 0.0) /
          static_cast<double>(radius.size());
-}
-
-void check(const Material& material) {
-  const auto must = [](bool holds, const char* what, double value) {
-    if (!holds)
-      throw std::invalid_argument(fmt::format("{}, not {}", what, value));
-  };
-  must(material.normal_stiffness > 0.0 && std::isfinite(material.normal_stiffness),
-       "normal_stiffness must be positive", material.normal_stiffness);
-  must(material.tangential_stiffness >= 0.0 && std::isfinite(material.tangential_stiffness),
-       "tangential_stiffness must not be negative", material.tangential_stiffness);
-  must(material.tensile_strength >= 0.0, "tensile_strength must not be negative",
-       material.tensile_strength);
-  must(material.shear_strength >= 0.0, "shear_strength must not be negative",
-       material.shear_strength);
-  must(material.friction >= 0.0, "friction must not be negative", material.friction);
 }
 
 } // namespace
@@ -96,7 +81,8 @@ template <int dim> StepLimit Engine<dim>::step_limit() const {
   for (std::int64_t i = 0; i < count; ++i)
     sums[i] = row_sum(contacts_, incident, particles_, boundary_, i);
   const auto largest = std::max_element(sums.begin(), sums.end());
-  return {*largest, fmt::format("particle {}", largest - sums.begin())};
+  return {with_dashpots(*largest, dashpot_time(contacts_, particles_)),
+          fmt::format("particle {}", largest - sums.begin())};
 }
 
 template <int dim>
@@ -112,8 +98,9 @@ template <int dim>
 void Engine<dim>::omega2(std::span<const std::uint32_t> points, std::span<double> out) const {
   assert(out.size() == points.size());
   const Incidence incident = incidence(contacts_, size());
+  const double time = dashpot_time(contacts_, particles_);
   for (std::size_t k = 0; k < points.size(); ++k)
-    out[k] = row_sum(contacts_, incident, particles_, boundary_, points[k]);
+    out[k] = with_dashpots(row_sum(contacts_, incident, particles_, boundary_, points[k]), time);
 }
 
 template <int dim> void Engine<dim>::start(double time_step) {
@@ -149,8 +136,9 @@ template <int dim> void Engine<dim>::compute_own_forces() {
   }
   // The increment of the first step is the displacement from the reference configuration.
   const Increment<dim> increment =
-      step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0}
-                 : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_};
+      step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0, 0.0}
+                 : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_,
+                                  time_step_};
   compute_contact_forces(contacts_, particles_, increment, shear_increment_, material_.friction,
                          loads_);
   add_damping(damping_, particles_, loads_);
@@ -217,13 +205,14 @@ template <int dim> void Engine<dim>::book_step() {
 template <int dim> Energies Engine<dim>::energies() const {
   Energies energies;
   energies.kinetic = kinetic_energy(particles_, loads_, boundary_, time_step_);
-  energies.elastic = elastic_energy(contacts_);
+  energies.elastic = elastic_energy(contacts_, particles_);
   energies.external_work = work_.external;
   energies.interface_work = work_.interface;
   energies.damping_dissipation = -work_.damping;
   for (const ContactLosses& block : contacts_.losses) {
     energies.friction_dissipation += block.friction;
     energies.fracture_dissipation += block.fracture;
+    energies.damping_dissipation += block.viscous;
   }
   return energies;
 }

@@ -10,14 +10,39 @@
 
 namespace kerf::dem {
 
-/// Constants of every contact; in 2D all of them are per metre of thickness.
+enum class NormalLaw {
+  linear,        // springs of constant stiffness
+  hertz_mindlin, // elastic spheres; no bonds
+};
+
+/// Constants of every contact; in 2D all of them are per metre of thickness. What follows from them
+/// is in contact_constants.hpp.
 struct Material {
-  double density = 0.0;                                              // of the solid, kg/m³
-  double normal_stiffness = 0.0;                                     // k_n, N/m
-  double tangential_stiffness = 0.0;                                 // k_t, N/m
-  double tensile_strength = std::numeric_limits<double>::infinity(); // R_n, N
-  double shear_strength = std::numeric_limits<double>::infinity();   // R_t, N
-  double friction = 0.0;                                             // mu of broken contacts
+  static constexpr double unbreakable = std::numeric_limits<double>::infinity();
+
+  double density = 0.0; // of the solid, kg/m³
+  NormalLaw law = NormalLaw::linear;
+  double friction = 0.0; // mu of contacts without bond
+
+  // Linear springs: the same for all contacts, or from a modulus and the sizes.
+  double normal_stiffness = 0.0;     // k_n, N/m
+  double tangential_stiffness = 0.0; // k_t, N/m
+  double contact_modulus = 0.0;      // E_c, Pa; 0: the stiffness is given
+  double stiffness_ratio = 0.0;      // k_t / k_n with a contact modulus
+
+  // Bonds: the weaker of strength and stress times cross-section counts.
+  double tensile_strength = unbreakable; // R_n, N
+  double shear_strength = unbreakable;   // R_t, N
+  double tensile_stress = unbreakable;   // Pa
+  double shear_stress = unbreakable;     // Pa
+  double bond_radius_ratio = 0.0;        // of the smaller radius; 0: bonds without moments
+
+  // Spheres of Hertz and Mindlin.
+  double young_modulus = 0.0; // Pa
+  double poisson_ratio = 0.0;
+
+  double restitution = 1.0;      // of a collision; 1: no dashpots
+  double rolling_friction = 0.0; // mu_r
 };
 
 /// Where the tangential displacement of a step is measured.

@@ -1,6 +1,7 @@
 #include "dem_core/time_step.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kerf::dem {
 
@@ -13,6 +14,8 @@ constexpr int dofs(int dim) {
 /// Translations u, then scaled rotations r theta.
 template <int dim> using Block = Eigen::Matrix<double, dofs(dim), dofs(dim)>;
 template <int dim> using Row = Eigen::Matrix<double, dofs(dim), 1>;
+/// Of a moment against relative rotation.
+template <int dim> using Moment = Eigen::Matrix<double, rotations<dim>, rotations<dim>>;
 /// What a motion of one particle does to the relative displacement at the point of contact.
 template <int dim> using Kinematics = Eigen::Matrix<double, dim, dofs(dim)>;
 
@@ -39,18 +42,26 @@ double row_sum(const Contacts<dim>& c, const Incidence& incidence, const Particl
       continue;
 
     const Vec<dim> n = is_second ? Vec<dim>(-span.normal()) : span.normal(); // away from particle i
+    const ContactStiffness spring = stiffness_of(c, k, span.opening);
     const double length = span.length;
     const double lever = length / (p.radius[c.first[k]] + p.radius[c.second[k]]);
     const Eigen::Matrix<double, dim, dim> normal = n * n.transpose();
     const Eigen::Matrix<double, dim, dim> stiffness =
-        c.weight[k] *
-        (c.normal_stiffness[k] * normal +
-         c.tangential_stiffness[k] * (Eigen::Matrix<double, dim, dim>::Identity() - normal));
+        c.weight[k] * (spring.normal * normal +
+                       spring.tangential * (Eigen::Matrix<double, dim, dim>::Identity() - normal));
     Kinematics<dim> self = rolling<dim>(n, lever), other = self;
     self.template leftCols<dim>() = -Eigen::Matrix<double, dim, dim>::Identity();
     other.template leftCols<dim>().setIdentity();
     own += self.transpose() * stiffness * self;
     others += (self.transpose() * stiffness * other).cwiseAbs().rowwise().sum();
+    if (spring.bending > 0.0) {
+      Moment<dim> moment = c.weight[k] * spring.bending * Moment<dim>::Identity();
+      if constexpr (dim == 3)
+        moment += c.weight[k] * (spring.twisting - spring.bending) * normal;
+      const double r = p.radius[i], r_other = p.radius[is_second ? c.first[k] : c.second[k]];
+      own.template bottomRightCorner<rotations<dim>, rotations<dim>>() += moment / (r * r);
+      others.template tail<rotations<dim>>() += moment.cwiseAbs().rowwise().sum() / (r * r_other);
+    }
   }
 
   const Row<dim> sums = own.cwiseAbs().rowwise().sum() + others;
@@ -65,6 +76,34 @@ double row_sum(const Contacts<dim>& c, const Incidence& incidence, const Particl
   }
   return largest;
 }
+
+template <int dim> double dashpot_time(const Contacts<dim>& c, const Particles<dim>& p) {
+  double longest = 0.0;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    const double opening = span_of(c, p, k).opening;
+    if (!c.carries(k, opening))
+      continue;
+    const ContactStiffness spring = stiffness_of(c, k, opening);
+    const double stiffens =
+        c.law == ContactLaw::hertz_mindlin ? std::pow(std::max(0.0, -opening), 0.25) : 1.0;
+    if (spring.normal > 0.0)
+      longest = std::max(longest, stiffens * c.normal_viscosity[k] / spring.normal);
+    if (spring.tangential > 0.0)
+      longest = std::max(longest, stiffens * c.tangential_viscosity[k] / spring.tangential);
+  }
+  return longest;
+}
+
+double with_dashpots(double omega2, double time) {
+  const double xi = 0.5 * std::sqrt(omega2) * time;
+  const double factor = std::sqrt(1.0 + xi * xi) - xi;
+  return omega2 / (factor * factor);
+}
+
+#define KERF_INSTANTIATE(dim)                                                                      \
+  template double dashpot_time<dim>(const Contacts<dim>&, const Particles<dim>&);
+KERF_INSTANTIATE(2)
+KERF_INSTANTIATE(3)
 
 template double row_sum<2>(const Contacts<2>&, const Incidence&, const Particles<2>&,
                            const Boundary<2>&, std::size_t);

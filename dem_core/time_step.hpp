@@ -21,4 +21,16 @@ template <int dim>
 double row_sum(const Contacts<dim>& contacts, const Incidence& incidence,
                const Particles<dim>& particles, const Boundary<dim>& boundary, std::size_t i);
 
+/// Longest ratio of viscosity to stiffness of the contacts that carry, s; 0 without dashpots.
+template <int dim>
+double dashpot_time(const Contacts<dim>& contacts, const Particles<dim>& particles);
+
+/// Dashpots act with the velocity of half a step before and shorten the critical step to
+/// 2 / omega (sqrt(1 + xi²) - xi), where xi is their share of critical damping: viscosities are at
+/// most `time` times stiffnesses, so xi <= omega time / 2.
+/// @return the omega² without dashpots that has this critical step, rad²/s²
+/// @see T. Belytschko & T.J.R. Hughes (eds), Computational Methods for Transient Analysis (1983),
+///      chapter 1
+double with_dashpots(double omega2, double time);
+
 } // namespace kerf::dem
