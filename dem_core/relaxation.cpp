@@ -116,7 +116,7 @@ private:
   /// Calls body(i) for every particle, in parallel.
   template <class Body> void for_each(Body body) const {
     const auto count = static_cast<std::int64_t>(size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > 2000)
     for (std::int64_t i = 0; i < count; ++i)
       body(static_cast<std::size_t>(i));
   }
@@ -126,7 +126,7 @@ private:
       return true;
     const auto count = static_cast<std::int64_t>(size());
     double farthest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : farthest)
+#pragma omp parallel for schedule(static) reduction(max : farthest) if (count > 2000)
     for (std::int64_t i = 0; i < count; ++i)
       farthest = std::max(farthest, (particles_.positions[i] - listed_[i]).squaredNorm());
     return farthest > 0.25 * skin_ * skin_;

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <unistd.h>
 
@@ -20,6 +21,7 @@ int pack(const std::vector<std::string>& arguments) {
   for (std::string& word : words)
     pointers.push_back(word.data());
   pointers.push_back(nullptr);
+  setenv("OMP_WAIT_POLICY", "passive", 0); // its parallel regions are too short to spin between
   execv(program.c_str(), pointers.data()); // returns only when it fails
   fmt::print(stderr, "kerf: {} cannot be started: {}.\n", program, std::strerror(errno));
   return exit_code::run_failed;
