@@ -142,11 +142,9 @@ private:
     rearrange(leans_on_wall_, order);
     neighbours_ = find_neighbours(cells, particles_, period_, skin_ + clearance * reach_);
     listed_ = particles_.positions;
-    is_near_wall_.resize(size());
-    for_each([&](std::size_t i) {
-      is_near_wall_[i] =
-          region_.wall(particles_.positions[i]).depth < particles_.radii[i] + 0.5 * skin_;
-    });
+    listed_depth_.resize(size());
+    for_each(
+        [&](std::size_t i) { listed_depth_[i] = region_.wall(particles_.positions[i]).depth; });
   }
 
   void wrap(Vec<dim>& x) const {
@@ -227,10 +225,16 @@ private:
       if (step > limit)
         velocity_[i] *= limit / step;
       x += time_step_ * velocity_[i];
-      leans_on_wall_[i] = is_near_wall_[i] && push_inside(i);
+      leans_on_wall_[i] = may_reach_wall(i) && push_inside(i);
       if (leans_on_wall_[i])
         velocity_[i] = (x - before) / time_step_;
     });
+  }
+
+  /// False when it cannot have come so far since it was listed.
+  bool may_reach_wall(std::size_t i) const {
+    const double moved = (particles_.positions[i] - listed_[i]).norm();
+    return listed_depth_[i] - moved < particles_.radii[i];
   }
 
   /// Moves a particle back to where it does not reach through the wall; several times in a corner.
@@ -262,8 +266,8 @@ private:
 
   double skin_ = 0.0, reach_ = 0.0; // m
   NeighbourList neighbours_;
-  std::vector<Vec<dim>> listed_; // positions when the neighbours were found, m
-  std::vector<std::uint8_t> is_near_wall_;
+  std::vector<Vec<dim>> listed_;     // positions when the neighbours were found, m
+  std::vector<double> listed_depth_; // below the wall at that time, m
 
   double time_step_ = 0.1, mixing_ = first_mixing;
   int downhill_steps_ = 0;
