@@ -42,9 +42,10 @@ private:
                       "give the name of a solver, or the command line of your own.");
       participant["solver"] = nullptr;
     }
-    if (participant["kind"] == "dem")
+    if (participant["kind"] == "dem") {
       check_particles(key + ".particles", participant["particles"]);
-    else
+      check_bonds(key + ".bonds", participant["bonds"]);
+    } else
       check_elastic(key + ".material", participant["material"]);
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
@@ -54,15 +55,21 @@ private:
 
   void check_particles(const string& key, const json& particles) {
     const json& lattice = particles["lattice"];
-    if (lattice.is_null() == particles["file"].is_null())
-      problems_.add(
-          key,
-          fmt::format("{} has {} lattice {} file.", key, lattice.is_null() ? "neither" : "both",
-                      lattice.is_null() ? "nor" : "and"),
-          fmt::format("give either a table [{}.lattice] or file = \"packing.txt\".", key));
+    const std::vector<string> sources = given(particles, {"lattice", "file", "packing"});
+    if (sources.size() != 1)
+      problems_.add(key,
+                    fmt::format("{} has {}.", key,
+                                sources.empty() ? "neither lattice nor file nor packing"
+                                                : fmt::format("{}", fmt::join(sources, " and "))),
+                    fmt::format("give one: a table [{}.lattice], a table [{}.packing], or file = "
+                                "\"packing.txt\".",
+                                key, key));
     else if (lattice.is_null() && !particles["radius"].is_null())
-      problems_.add(key + ".radius", key + ".radius is given, but the file has the radii.",
+      problems_.add(key + ".radius",
+                    fmt::format("{}.radius is given, but the {} has the radii.", key, sources[0]),
                     "leave radius out.");
+    if (!particles["packing"].is_null())
+      check_packing(key + ".packing", particles["packing"]);
     if (lattice.is_null())
       return;
     const string type = lattice["type"];
@@ -80,6 +87,61 @@ private:
                       "give 1 for the other axes, for example [80, 1].");
         break;
       }
+  }
+
+  void check_packing(const string& key, const json& packing) {
+    check_region(key + ".region", packing["region"]);
+    if (!packing["cut"].is_null())
+      check_region(key + ".cut", packing["cut"]);
+    const json& radii = packing["radii"];
+    check_keys_of(
+        key + ".radii", radii, "law", radii["law"],
+        {{"uniform", {"min", "max"}}, {"power", {"min", "max", "exponent"}}, {"list", {"values"}}});
+    if (radii["max"] < radii["min"])
+      problems_.add(key + ".radii.max",
+                    fmt::format("{}.radii.max = {} is below min = {}.", key,
+                                value_text(radii["max"]), value_text(radii["min"])),
+                    "give min below max.");
+    if (!radii["weights"].is_null() && radii["weights"].size() != radii["values"].size())
+      problems_.add(key + ".radii.weights",
+                    fmt::format("{}.radii has {} weights for {} values.", key,
+                                radii["weights"].size(), radii["values"].size()),
+                    "give one weight for each of the values.");
+  }
+
+  void check_region(const string& key, const json& region) {
+    const std::vector<string> found =
+        given(region, {"box", "center", "bottom", "top", "radius", "surface"});
+    using Words = std::vector<string>;
+    const bool is_good = found == Words{"box"} || found == Words{"center", "radius"} ||
+                         (found == Words{"bottom", "top", "radius"} && !is_plane_) ||
+                         found == Words{"surface"};
+    if (!is_good)
+      problems_.add(
+          key,
+          fmt::format("{} has {}.", key,
+                      found.empty() ? "no shape" : fmt::format("{}", fmt::join(found, ", "))),
+          fmt::format("give one shape: box; center with radius; {}or surface.",
+                      is_plane_ ? "" : "bottom and top with radius; "));
+  }
+
+  /// Bonds by their gap or by their number; the one that is not given takes no part.
+  void check_bonds(const string& key, json& bonds) {
+    if (bonds["coordination_number"].is_null())
+      return;
+    if (document_.places.contains(key + ".gap_tolerance"))
+      problems_.add(key + ".coordination_number",
+                    key + " has both gap_tolerance and coordination_number.",
+                    "give one of them: the other follows.");
+    bonds["gap_tolerance"] = nullptr;
+  }
+
+  static std::vector<string> given(const json& table, const std::vector<string>& names) {
+    std::vector<string> found;
+    for (const string& name : names)
+      if (!table[name].is_null())
+        found.push_back(name);
+    return found;
   }
 
   void check_elastic(const string& key, const json& material) {
@@ -131,6 +193,8 @@ private:
   /// Each choice of a key needs its own keys and none of the others'.
   void check_keys_of(const string& key, const json& table, const string& choice_key,
                      const string& choice, const std::map<string, std::set<string>>& keys) {
+    const auto own = keys.find(choice);
+    const std::set<string> keys_of_choice = own == keys.end() ? std::set<string>() : own->second;
     for (const auto& [other, names] : keys)
       for (const string& name : names) {
         const string full = key + "." + name;
@@ -138,7 +202,7 @@ private:
           problems_.add(
               full, fmt::format("{} is missing.", full),
               fmt::format("{} = \"{}\" needs {}.", choice_key, choice, fmt::join(names, ", ")));
-        if (other != choice && !table[name].is_null())
+        if (other != choice && !keys_of_choice.contains(name) && !table[name].is_null())
           problems_.add(full,
                         fmt::format("{} is given, but {} = \"{}\" does not use it.", full,
                                     choice_key, choice),

@@ -10,6 +10,20 @@ namespace {
 using nlohmann::json;
 using std::string;
 
+json example_table(const string& table, const string& kind);
+
+/// The text with every line a comment.
+string commented(const string& text) {
+  string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin) + 1;
+    const string line = text.substr(begin, end - begin);
+    result += (line.front() == '#' || line.front() == '\n' ? "" : "# ") + line;
+    begin = end;
+  }
+  return result;
+}
+
 /// Writes settings in the order of the table of keys, plain or with everything there is to know.
 class Writer {
 public:
@@ -69,6 +83,11 @@ private:
     } else if (!value.is_null()) {
       begin_table(fmt::format("[{}]", header), key.doc);
       write_table(inside(key), header, kind, value);
+    } else if (with_notes_) { // the case does without it
+      Writer table(true);
+      table.begin_table(fmt::format("[{}]", header), key.doc);
+      table.write_table(inside(key), header, kind, example_table(inside(key), kind));
+      text += '\n' + commented(table.text);
     }
   }
 

@@ -23,6 +23,7 @@ enum class Type {
   integer_or_auto,
   number_or_auto,
   texts,    // [text…]
+  numbers,  // [number…]
   pair,     // [text, text]
   interval, // [number, number], the first below the second
   vector,   // [number…], one per dimension of the case

@@ -22,11 +22,19 @@ std::vector<Key> participant_keys(const std::string& kind) {
   };
 }
 
-std::vector<Key> model_of_particles() {
+std::vector<Key> joined(std::vector<std::vector<Key>> parts) {
+  std::vector<Key> keys;
+  for (std::vector<Key>& part : parts)
+    std::move(part.begin(), part.end(), std::back_inserter(keys));
+  return keys;
+}
+
+/// Which particles there are.
+std::vector<Key> particle_set_keys() {
   using enum Type;
   return {
       {"participants.*.particles", "dem", table, "", tables, anything, "particle set",
-       "the particles: exactly one of lattice and file"},
+       "the particles: exactly one of lattice, file and packing"},
       {"participants.*.particles.lattice", "dem", optional_table, "", none, anything, "lattice",
        "a regular arrangement; its first particle is at the origin", live},
       {"participants.*.particles.lattice.type", "dem", text, "", required,
@@ -39,9 +47,15 @@ std::vector<Key> model_of_particles() {
       {"participants.*.particles.lattice.count", "dem", counts, "", required, in(from_one),
        "[80, 8]", "the number of particles along each axis; of fcc, of cells with 4 particles"},
       {"participants.*.particles.file", "dem", path, "", none, anything, R"("packing.txt")",
-       "a text file with lines x y [z] r, in m"},
+       "a packing in m: lines x y [z] r, legacy VTK, YADE's text or a LAMMPS dump"},
       {"participants.*.particles.radius", "dem", number, "m", none, in(above_zero), "0.5e-3",
        "the radius of lattice particles; half of the spacing when not given"},
+  };
+}
+
+std::vector<Key> model_of_particles() {
+  using enum Type;
+  return {
       {"participants.*.material", "dem", table, "", tables, anything, "material",
        "the particles and their contacts"},
       {"participants.*.material.density", "dem", number, "kg/m³", required, in(above_zero),
@@ -60,6 +74,8 @@ std::vector<Key> model_of_particles() {
        "which particles are bonded"},
       {"participants.*.bonds.gap_tolerance", "dem", number, "", "0.001", in(from_zero), "1e-3",
        "the largest gap that is bonded at the start, over the sum of the two radii"},
+      {"participants.*.bonds.coordination_number", "dem", number, "", none, in(above_zero), "5.4",
+       "instead of gap_tolerance: 2 bonds / particles, which the tolerance follows from"},
       {"participants.*.bonds.shear_increment", "dem", text, "", R"("midpoint")",
        one_of({"midpoint", "endpoint"}), R"("midpoint")",
        "where a step measures tangential motion: midpoint conserves energy, endpoint is YADE's "
@@ -159,17 +175,11 @@ std::vector<Key> motion_keys(const std::string& kind) {
   return keys;
 }
 
-std::vector<Key> joined(std::vector<std::vector<Key>> parts) {
-  std::vector<Key> keys;
-  for (std::vector<Key>& part : parts)
-    std::move(part.begin(), part.end(), std::back_inserter(keys));
-  return keys;
-}
-
 } // namespace
 
 std::vector<Key> particle_keys() {
-  return joined({participant_keys("dem"), model_of_particles(), motion_keys("dem")});
+  return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
+                 motion_keys("dem")});
 }
 
 std::vector<Key> mesh_keys() {

@@ -33,4 +33,7 @@ inline constexpr bool live = true; // see Key::live
 std::vector<Key> particle_keys();
 std::vector<Key> mesh_keys();
 
+/// The keys of "participants.*.particles.packing", which is made before the run.
+std::vector<Key> packing_keys();
+
 } // namespace kerf::config

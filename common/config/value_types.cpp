@@ -68,6 +68,8 @@ string wanted(Type type, std::size_t dimension) {
     return "a number or \"auto\"";
   case Type::texts:
     return "an array of texts";
+  case Type::numbers:
+    return "an array of numbers";
   case Type::pair:
     return "an array of two texts";
   case Type::interval:
@@ -110,6 +112,8 @@ bool has_type(const json& value, Type type, std::size_t dimension) {
     return value.is_number() || value == "auto";
   case Type::texts:
     return is_array_of(value, 0, is_text);
+  case Type::numbers:
+    return is_array_of(value, 0, is_number);
   case Type::pair:
     return is_array_of(value, 2, is_text);
   case Type::interval:

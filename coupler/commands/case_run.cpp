@@ -2,6 +2,7 @@
 
 #include "common/exit_code.hpp"
 #include "coupler/broker/process_supervisor.hpp"
+#include "coupler/commands/packings.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +41,7 @@ void say(const std::string& sentence) {
 
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
                              bool plan_only, decltype(coupler::RunSetup::progress) progress) {
-  const nlohmann::json& settings = case_file.settings();
+  const nlohmann::json settings = with_packings(case_file, run_folder);
   coupler::ProcessSupervisor supervisor(
       settings.at("participants"), std::filesystem::read_symlink("/proc/self/exe").parent_path(),
       run_folder / "logs");

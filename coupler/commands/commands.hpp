@@ -20,4 +20,7 @@ int run(const RunOptions& options);
 /// Does all of a run but its steps, and prints the plan.
 int check(const RunOptions& options);
 
+/// Becomes the program `kerf-dem pack`; returns only when that cannot be started.
+int pack(const std::vector<std::string>& arguments);
+
 } // namespace kerf::commands

@@ -34,6 +34,12 @@ int main(int argc, char** argv) {
   add_case(check);
   check->callback([&] { exit_code = kerf::commands::check(options); });
 
+  CLI::App* pack = app.add_subcommand(
+      "pack", "Makes, cuts, converts and measures packings; pack --help says more");
+  pack->prefix_command();
+  pack->set_help_flag();
+  pack->callback([&] { exit_code = kerf::commands::pack(pack->remaining()); });
+
   CLI::App* reference = app.add_subcommand(
       "reference", "Prints every key of a case with its unit, default and range");
   reference->callback([] { std::fputs(kerf::config::reference_toml().c_str(), stdout); });

@@ -19,7 +19,7 @@ fs::path prepare_run_folder(const fs::path& out, const CaseFile& case_file) {
       throw ConfigError({"--out", 0},
                         fmt::format("{} holds files that are not a run of kerf.", folder.string()),
                         "give an empty or a new folder.");
-    for (const char* part : {"history", "frames", "logs", "run.json", "summary.json"})
+    for (const char* part : {"history", "frames", "logs", "packings", "run.json", "summary.json"})
       fs::remove_all(folder / part);
     for (const auto& entry : fs::directory_iterator(folder))
       if (entry.path().extension() == ".xdmf")

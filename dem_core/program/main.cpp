@@ -3,6 +3,7 @@
 #include "common/log.hpp"
 #include "coupler/participant/participant.hpp"
 #include "dem_core/program/dem_participant.hpp"
+#include "dem_core/program/pack.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -42,6 +43,8 @@ int main(int count, char** arguments) {
     fmt::print("{}\n", program);
     return exit_code::done;
   }
+  if (count > 1 && std::string_view(arguments[1]) == "pack")
+    return dem::run_pack(count, arguments);
   if (std::getenv("KERF_BROKER") == nullptr) {
     fmt::print(stderr, "kerf-dem takes part in a run and is started by `kerf run CASE.toml`.\n");
     return exit_code::bad_input;

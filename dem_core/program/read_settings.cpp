@@ -2,6 +2,7 @@
 
 #include "common/packing_file.hpp"
 #include "coupler/participant/participant.hpp"
+#include "dem_core/bonding.hpp"
 #include "dem_core/lattice.hpp"
 
 #include <fmt/format.h>
@@ -221,6 +222,18 @@ template <int dim> Period<dim> read_period(const Node& node) {
   return period;
 }
 
+/// As given, or the one that gives the bonds their number.
+template <int dim> double read_gap_tolerance(const Node& bonds, const Settings<dim>& s) {
+  const Node number = bonds["coordination_number"];
+  if (number.is_null())
+    return bonds["gap_tolerance"].not_negative_or(s.gap_tolerance);
+  try {
+    return gap_tolerance_for<dim>(number.positive(), s.positions, s.radii, s.period);
+  } catch (const std::invalid_argument& error) {
+    number.fail(error.what());
+  }
+}
+
 } // namespace
 
 template <int dim>
@@ -235,7 +248,8 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
   else
     read_file(particles["file"], s);
   s.material = read_material(node["material"]);
-  s.gap_tolerance = node["bonds"]["gap_tolerance"].not_negative_or(s.gap_tolerance);
+  s.period = read_period<dim>(Node(case_table, "")["periodic"]);
+  s.gap_tolerance = read_gap_tolerance<dim>(node["bonds"], s);
   if (const Node rule = node["bonds"]["shear_increment"]; !rule.is_null())
     s.shear_increment = rule.one_of(shear_increments);
   if (const Node damping = node["damping"]; !damping.is_null()) {
@@ -247,7 +261,6 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
     s.boundary.push_back(read_prescription<dim>(node["boundary"][k]));
   for (std::size_t k = 0; k < node["initial"].size(); ++k)
     s.initial.push_back(read_initial<dim>(node["initial"][k]));
-  s.period = read_period<dim>(Node(case_table, "")["periodic"]);
   return s;
 }
 

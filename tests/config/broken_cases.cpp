@@ -164,14 +164,17 @@ TEST(BrokenCase, elastic_constants_are_one_pair_exactly) {
             "");
 }
 
-TEST(BrokenCase, particles_come_from_a_lattice_or_a_file_but_not_from_neither) {
+TEST(BrokenCase, particles_come_from_exactly_one_source) {
   const std::string told =
       complaint(sample_with("[participants.rock.particles.lattice]\ntype = \"square\"\n"
                             "spacing = 1e-3\norigin = [0.0, 0.0]\ncount = [10, 4]\n",
                             ""));
-  EXPECT_NE(told.find("participants.rock.particles has neither lattice nor file."),
+  EXPECT_NE(told.find("participants.rock.particles has neither lattice nor file nor packing."),
             std::string::npos)
       << told;
+  EXPECT_NE(complaint(sample, {"participants.rock.particles.packing={porosity=0.2}"})
+                .find("participants.rock.particles has lattice and packing."),
+            std::string::npos);
 }
 
 TEST(BrokenCase, a_motion_needs_its_own_keys_and_no_others) {

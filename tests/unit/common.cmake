@@ -6,6 +6,7 @@ add_executable(common_tests
   ${PROJECT_SOURCE_DIR}/tests/unit/common_history.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_log.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_nearest.cpp
+  ${PROJECT_SOURCE_DIR}/tests/unit/common_packing_file.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_results.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_surface.cpp)
 target_compile_definitions(
