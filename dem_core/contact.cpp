@@ -137,9 +137,10 @@ template <int dim> double Contacts<dim>::memory() const {
 
 template <int dim>
 Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
-                            double gap_tolerance, double skin, const Period<dim>& period) {
+                            std::optional<double> gap_tolerance, double skin,
+                            const Period<dim>& period) {
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
-  const double reach = std::max(skin, gap_tolerance * 2.0 * largest);
+  const double reach = std::max(skin, gap_tolerance.value_or(0.0) * 2.0 * largest);
   Contacts<dim> c;
   c.law = law_of(material);
   const std::vector<Pair> pairs = pairs_within(particles, reach, period);
@@ -151,7 +152,8 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
     const double distance = period.shortest(particles.reference[j] - particles.reference[i]).norm();
     if (distance == 0.0)
       throw std::invalid_argument(fmt::format("particles {} and {} share a centre", i, j));
-    const bool bonded = distance - contact_distance <= gap_tolerance * contact_distance;
+    const bool bonded =
+        gap_tolerance && distance - contact_distance <= *gap_tolerance * contact_distance;
     if (!bonded && distance - contact_distance > skin)
       continue;
     set_new(c, count, pair, particles, period);
@@ -269,8 +271,8 @@ Vec<dim> shear_force(const Contacts<dim>& c, const Particles<dim>& particles, st
 
 #define KERF_INSTANTIATE(dim)                                                                      \
   template struct Contacts<dim>;                                                                   \
-  template Contacts<dim> make_contacts<dim>(const Particles<dim>&, const Material&, double,        \
-                                            double, const Period<dim>&);                           \
+  template Contacts<dim> make_contacts<dim>(const Particles<dim>&, const Material&,                \
+                                            std::optional<double>, double, const Period<dim>&);    \
   template void renew_contacts<dim>(Contacts<dim>&, const Particles<dim>&, const Material&,        \
                                     double, const Period<dim>&);                                   \
   template void blend<dim>(Contacts<dim>&, const Particles<dim>&);                                 \

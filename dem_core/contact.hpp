@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -110,10 +111,12 @@ template <int dim> struct Contacts {
 
 /// Contacts at the start: bonds where the gap is within the tolerance, each free of stress at the
 /// distance it has in the reference configuration, and all other pairs within the skin.
+/// @param gap_tolerance  over r_i + r_j; nothing: no bonds
 /// @throws std::invalid_argument when two particles share a centre or a period is too short
 template <int dim>
 Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
-                            double gap_tolerance, double skin, const Period<dim>& period);
+                            std::optional<double> gap_tolerance, double skin,
+                            const Period<dim>& period);
 
 /// Makes the list again for the current positions. What was bonded at the start stays, with its
 /// stress-free distance; other pairs stay while they are within the skin, and keep their history.

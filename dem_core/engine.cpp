@@ -38,7 +38,9 @@ Engine<dim>::Engine(const Settings<dim>& settings)
       start_rotation_(particles_.size(), Rot<dim>::Zero()) {
   check(material_);
   const double width = skin_width(particles_.radius);
-  contacts_ = make_contacts(particles_, material_, settings.gap_tolerance, width, period_);
+  contacts_ = make_contacts(particles_, material_,
+                            settings.bonds ? std::optional(settings.gap_tolerance) : std::nullopt,
+                            width, period_);
   skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
   bonds_at_start_ = contacts_.bonds();
   start_rotation_ = apply_initial_displacements<dim>(initial_, particles_);

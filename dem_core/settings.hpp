@@ -101,6 +101,7 @@ template <int dim> struct Settings {
   std::vector<Vec<dim>> positions; // [n] centres in the reference configuration, m
   std::vector<double> radii;       // [n] m
   Material material;
+  bool bonds = true;           // between neighbours at the start
   double gap_tolerance = 1e-3; // bonded when distance - (r_i + r_j) <= gap_tolerance (r_i + r_j)
   ShearIncrement shear_increment = ShearIncrement::midpoint;
   Damping damping;

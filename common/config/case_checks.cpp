@@ -45,6 +45,11 @@ private:
     if (participant["kind"] == "dem") {
       check_particles(key + ".particles", participant["particles"]);
       check_bonds(key + ".bonds", participant["bonds"]);
+      const json& material = participant["material"];
+      check_keys_of(key + ".material", material, "law", material["law"],
+                    {{"linear", {"normal_stiffness", "tangential_stiffness"}},
+                     {"linear_by_size", {"contact_modulus", "stiffness_ratio"}},
+                     {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}});
     } else
       check_elastic(key + ".material", participant["material"]);
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)

@@ -10,7 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <omp.h>
 
+#include <cmath>
 #include <numeric>
+#include <optional>
+#include <stdexcept>
 
 namespace kerf::dem {
 
@@ -19,10 +22,13 @@ namespace {
 using coupler::SettingsError;
 using nlohmann::json;
 
-/// Measures the two calls in which an engine works.
+/// Measures the two calls in which an engine works, and watches the critical step, which falls as
+/// contacts form.
 template <int dim> class TimedEngine {
 public:
-  explicit TimedEngine(Engine<dim>& engine) : engine_(engine) {}
+  /// @param time_step  that must stay below the critical one, s; nothing: no matter
+  TimedEngine(Engine<dim>& engine, std::optional<double> time_step)
+      : engine_(engine), time_step_(time_step) {}
 
   void motion(std::span<const std::uint32_t> points, std::span<double> position,
               std::span<double> velocity) const {
@@ -31,6 +37,8 @@ public:
   void compute_own_forces() {
     const Stopwatch stopwatch(force_seconds);
     engine_.compute_own_forces();
+    if (time_step_ && (step_++ % steps_between_checks == 0 || engine_.renewals() != renewals_))
+      check_step();
   }
   void own_forces(std::span<const std::uint32_t> points, std::span<double> force) const {
     engine_.own_forces(points, force);
@@ -46,7 +54,24 @@ public:
   double force_seconds = 0.0, integrate_seconds = 0.0;
 
 private:
+  static constexpr std::uint64_t steps_between_checks = 1000;
+
+  void check_step() {
+    renewals_ = engine_.renewals();
+    const StepLimit limit = engine_.step_limit();
+    const double critical = 2.0 / std::sqrt(limit.omega2); // Rojek (2008) eq. 10
+    if (*time_step_ > critical)
+      throw std::runtime_error(
+          fmt::format("the time step of {:.4g} s is above the critical one, which has fallen to "
+                      "{:.4g} s with the contacts of {}; give case.time_step a smaller number or "
+                      "case.time_step_factor more room",
+                      *time_step_, critical, limit.limited_by));
+  }
+
   Engine<dim>& engine_;
+  std::optional<double> time_step_;
+  std::uint64_t step_ = 0;
+  std::size_t renewals_ = 0;
 };
 
 template <int dim> Engine<dim> make_engine(const json& table, const json& case_table) {
@@ -102,7 +127,9 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
   }
   engine.start(schedule.time_step);
   DemOutput<dim> output(engine, assignment.run_folder, assignment.name);
-  TimedEngine<dim> timed(engine);
+  TimedEngine<dim> timed(engine, case_table.value("allow_unstable", false)
+                                     ? std::nullopt
+                                     : std::optional(schedule.time_step));
   coupler::run_engine(timed, broker, plan, schedule, output);
 
   const json summary = {{"seconds",

@@ -23,9 +23,13 @@ TEST(BrokenCase, a_missing_table_names_the_line_of_its_participant) {
   EXPECT_TRUE(told.starts_with(line_of(text, "[participants.rock]") +
                                "participants.rock.material.density is missing."))
       << told;
-  EXPECT_NE(told.find("participants.rock.material.tangential_stiffness is missing."),
-            std::string::npos)
-      << told;
+}
+
+TEST(BrokenCase, a_contact_law_wants_its_own_constants_and_no_others) {
+  const std::string told =
+      complaint(sample_with("density = 2600.0", "density = 2600.0\nlaw = \"linear_by_size\""));
+  EXPECT_NE(told.find("contact_modulus"), std::string::npos) << told;
+  EXPECT_NE(told.find("normal_stiffness"), std::string::npos) << told;
 }
 
 TEST(BrokenCase, a_value_of_the_wrong_type_is_told_with_the_type_it_has) {
@@ -41,7 +45,7 @@ TEST(BrokenCase, an_unknown_key_is_told_with_the_nearest_one) {
   const std::string told = complaint(text);
   EXPECT_NE(told.find(line_of(text, "densty") +
                       "participants.rock.material.densty is not a key of a DEM material.\n"
-                      "  Fix: did you mean density? Allowed: density, normal_stiffness, "),
+                      "  Fix: did you mean density? Allowed: density, law, normal_stiffness, "),
             std::string::npos)
       << told;
 }
