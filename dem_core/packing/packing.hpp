@@ -12,7 +12,7 @@ namespace kerf::dem {
 
 /// Raised when the same settings give other particles than before: packings that were kept are then
 /// made again.
-inline constexpr int packing_version = 1;
+inline constexpr int packing_version = 2;
 
 struct PackingSettings {
   Radii radii;

@@ -172,10 +172,13 @@ private:
         const std::uint32_t j = neighbours_.index[e];
         const Vec<dim> branch = is_periodic ? period_.shortest(x[j] - x[i]) : Vec<dim>(x[j] - x[i]);
         const double touching = (1.0 + clearance) * (r[i] + r[j]), squared = branch.squaredNorm();
-        if (squared >= touching * touching || squared == 0.0)
+        if (squared >= touching * touching)
           continue;
         const double distance = std::sqrt(squared), overlap = touching - distance;
-        F -= overlap / distance * branch;
+        if (distance > 0.0)
+          F -= overlap / distance * branch;
+        else // two that a corner holds in the same place; any way apart will do
+          F[(i + j) % dim] += i < j ? overlap : -overlap;
         own += {overlap * overlap, overlap / (r[i] + r[j])};
       }
       force_[i] = F;

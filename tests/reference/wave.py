@@ -24,7 +24,7 @@ def largest_difference(a, b):
     return np.abs(a - b).max() / np.abs(b).max()
 
 
-class Wave(KerfTest):
+class ReferenceTest(KerfTest):
     def reference(self, command, given):
         """Runs a script of a reference code on the input. -> its output"""
         np.savez(self.folder / "input.npz", **given)
@@ -34,6 +34,8 @@ class Wave(KerfTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         return dict(np.load(self.folder / "output.npz"))
 
+
+class Wave(ReferenceTest):
     # YADE 2023.02 with the bonded law JCFpm, no damping; 20 x 10 discs in close-packed rows, free
     # all around but for the driven column. Tolerance: YADE keeps positions as they are, round-off of
     # 3e-18 m against displacements of 1e-7 m, and it turns the shear force to first order.

@@ -182,6 +182,19 @@ TEST(Packing, refuses_what_cannot_be_made) {
 }
 
 // Volume by hand: 1 - 1/8.
+// Seed 2 once left two spheres in the same corner, pressed into the same place.
+TEST(Packing, leaves_nobody_in_the_place_of_another) {
+  const dem::BoxRegion<3> box({Vec<3>::Zero(), Vec<3>::Constant(7.6)});
+  dem::PackingSettings settings;
+  settings.radii.law = dem::RadiusLaw::list;
+  settings.radii.values = {0.5};
+  settings.porosity = 0.4;
+  for (settings.seed = 1; settings.seed <= 5; ++settings.seed) {
+    const auto measures = dem::measure<3>(dem::pack<3>(box, settings), box.volume(), {});
+    EXPECT_LT(measures.largest_overlap, 0.3) << "seed " << settings.seed;
+  }
+}
+
 TEST(ClosedSurface, tells_inside_from_outside_at_edges_and_corners_of_both_kinds) {
   const auto cube = notched_cube();
   EXPECT_NEAR(cube.volume(), 0.875, 1e-14);
