@@ -100,6 +100,47 @@ TEST(CriticalStep, of_a_blended_packing_is_never_overestimated) {
   }
 }
 
+TEST(CriticalStep, of_bonds_that_bend_and_twist_is_never_overestimated) {
+  for (const double ratio : {0.2, 1.0}) {
+    auto disc = rock(2, ratio), sphere = rock(3, ratio);
+    disc.bond_radius_ratio = sphere.bond_radius_ratio = 1.0;
+    never_above(dem::Engine<2>(cases::pair_model<2>({1.0, 1.0}, disc)), "bending pair 2D");
+    never_above(dem::Engine<3>(cases::pair_model<3>({1.0, 0.4, 0.3}, sphere)), "bending pair 3D");
+    never_above(dem::Engine<2>(cases::irregular_model<2>(8, disc, 1)), "bending irregular 2D");
+    never_above(dem::Engine<3>(cases::irregular_model<3>(4, sphere, 1)), "bending irregular 3D");
+  }
+}
+
+// Closed form: x'' + 2 xi omega x' + omega² x = 0 with the velocity of half a step before is stable
+// up to dt = 2 / omega (sqrt(1 + xi²) - xi). A pair in line has omega² = 2 k_n / m and xi = beta.
+TEST(CriticalStep, of_a_pair_with_dashpots_is_that_of_a_velocity_half_a_step_old) {
+  auto material = rock(2, 0.0);
+  material.restitution = 0.2;
+  for (const double factor : {0.99, 1.01}) {
+    auto settings = cases::pair_model<2>({1.0, 0.0}, material);
+    dem::InitialCondition<2> push;
+    push.box = Box<2>{settings.positions[1], settings.positions[1]};
+    push.velocity = {1e-6, 0.0};
+    settings.initial = {push};
+    dem::Engine<2> engine(settings);
+    const double m = engine.particles().mass[0];
+    const double omega = std::sqrt(2.0 * material.normal_stiffness / m);
+    const double log = std::log(material.restitution);
+    const double beta = -log / std::sqrt(std::numbers::pi * std::numbers::pi + log * log);
+    const double critical = 2.0 / omega * (std::sqrt(1.0 + beta * beta) - beta);
+    EXPECT_NEAR(2.0 / std::sqrt(engine.step_limit().omega2), critical, 1e-9 * critical);
+    engine.start(factor * critical);
+    for (int n = 0; n < 2000; ++n)
+      cases::step(engine);
+    const auto& v = engine.particles().velocity;
+    const double apart = std::abs(v[1][0] - v[0][0]);
+    if (factor < 1.0)
+      EXPECT_LT(apart, 1e-9);
+    else
+      EXPECT_FALSE(apart < 1e-3);
+  }
+}
+
 // A prescribed component has no row; what is left is a principal part of the whole matrix, whose
 // eigenvalues lie within those of the whole.
 TEST(CriticalStep, leaves_out_what_is_prescribed) {

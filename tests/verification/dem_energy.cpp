@@ -83,6 +83,15 @@ TEST(Energy, of_a_free_face_centred_lattice_drifts_by_less_than_a_millionth) {
   EXPECT_LT(std::abs(d.mean), 1e-6);
 }
 
+TEST(Energy, of_a_free_body_whose_bonds_bend_and_twist_drifts_by_less_than_a_millionth) {
+  auto disc = rock(2, 0.5), sphere = rock(3, 0.5);
+  disc.bond_radius_ratio = sphere.bond_radius_ratio = 1.0;
+  const auto plane = drift<2>(cases::irregular_model<2>(8, disc, 1), 1e-6, 0.5, 1000);
+  EXPECT_LT(std::abs(plane.mean), 1e-6);
+  const auto solid = drift<3>(cases::irregular_model<3>(4, sphere, 1), 1e-6, 0.4, 500);
+  EXPECT_LT(std::abs(solid.mean), 1e-6);
+}
+
 // Reference: a symmetric rule of second order: half the step leaves a quarter of the peak. At
 // strains of 1e-3 the peaks stand far above rounding. Tolerance: the motion is chaotic in detail,
 // so the peaks of two runs differ by some tens of percent besides.
