@@ -4,93 +4,34 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <fstream>
-#include <limits>
 #include <string_view>
 
 namespace kerf {
 
 namespace {
 
-using Words = std::vector<std::string_view>;
 using Point = std::array<double, 3>;
 
-/// The lines of a file, and errors that name them.
-class Lines {
+/// A packing file as text, and what all its formats have in common.
+class PackingText : public TextFile {
 public:
-  explicit Lines(const std::filesystem::path& path) : path_(path), file_(path) {
-    if (!file_ || std::filesystem::is_directory(path))
-      throw PackingError(fmt::format("{} cannot be opened", path.string()));
-  }
+  explicit PackingText(const std::filesystem::path& path)
+      : TextFile(path, '#'), name_(path.string()) {}
 
-  /// The words of the next line, nothing at the end of the file. Comments are no words.
-  std::optional<Words> next() {
-    if (!std::getline(file_, line_)) {
-      if (file_.bad())
-        throw PackingError(fmt::format("{} cannot be read to its end", path_.string()));
-      return std::nullopt;
-    }
-    ++number_;
-    constexpr std::string_view blanks = " \t\r,";
-    std::string_view rest = std::string_view(line_).substr(0, line_.find('#'));
-    Words words;
-    for (;;) {
-      const auto begin = rest.find_first_not_of(blanks);
-      if (begin == std::string_view::npos)
-        return words;
-      rest.remove_prefix(begin);
-      const auto length = std::min(rest.find_first_of(blanks), rest.size());
-      words.push_back(rest.substr(0, length));
-      rest.remove_prefix(length);
-    }
+  void must_follow(const char* what) {
+    if (!next())
+      throw FileError(fmt::format("{} ends where {} should follow", name_, what));
   }
-  /// The same, without lines that have no word.
-  std::optional<Words> next_words() {
-    auto words = next();
-    while (words && words->empty())
-      words = next();
-    return words;
-  }
-  Words must_follow(const char* what) {
-    auto words = next_words();
-    if (!words)
-      throw PackingError(fmt::format("{} ends where {} should follow", path_.string(), what));
-    return *words;
-  }
-  const std::string& line() const { return line_; }
-
-  [[noreturn]] void fail(const std::string& sentence) const {
-    throw PackingError(fmt::format("{}:{}: {}", path_.string(), number_, sentence));
-  }
-  double number(std::string_view word) const {
-    if (word.starts_with('+'))
-      word.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      fail(fmt::format("\"{}\" is not a finite number", word));
-    return value;
-  }
-  double radius(std::string_view word) const {
+  double radius(std::size_t word) const {
     const double value = number(word);
     if (!(value > 0.0))
       fail(fmt::format("the radius {} m must be positive", value));
     return value;
   }
-  std::size_t count(std::string_view word) const {
-    const double value = number(word);
-    if (!(value >= 0.0) || value != std::floor(value) || value > 4e9)
-      fail(fmt::format("\"{}\" is not a number of particles", word));
-    return static_cast<std::size_t>(value);
-  }
 
 private:
-  std::filesystem::path path_;
-  std::ifstream file_;
-  std::string line_;
-  std::size_t number_ = 0;
+  std::string name_;
 };
 
 /// What a file holds. Lines of x y r have no z.
@@ -100,93 +41,96 @@ struct Content {
   bool is_plane = false;
 };
 
-Content read_lines(Lines& lines, std::optional<int> dim) {
+/// @param format_line  of YADE's text export, which may have columns after the radius
+Content read_lines(PackingText& file, std::optional<int> dim, bool has_format_line) {
   Content content;
   std::size_t columns = dim ? static_cast<std::size_t>(*dim) + 1 : 0; // 0: as in the first line
-  bool may_have_more = false; // columns after the radius, as YADE's #format x_y_z_r_matId
-  while (auto words = lines.next()) {
-    if (lines.line().starts_with("#format x_y_z_r")) {
-      columns = 4;
-      may_have_more = true;
-    }
-    if (words->empty())
-      continue;
+  if (has_format_line)
+    columns = 4;
+  while (file.next()) {
+    const std::size_t found = file.words().size();
     if (columns == 0)
-      columns = words->size() == 3 ? 3 : 4;
-    if (words->size() < columns || (words->size() > columns && !may_have_more))
-      lines.fail(fmt::format("a line must hold {} values, {}, but this one holds {}", columns,
-                             columns == 3 ? "x y r" : "x y z r", words->size()));
+      columns = found == 3 ? 3 : 4;
+    if (found < columns || (found > columns && !has_format_line))
+      file.fail(fmt::format("a line must hold {} values, {}, but this one holds {}", columns,
+                            columns == 3 ? "x y r" : "x y z r", found));
     Point point{};
     for (std::size_t a = 0; a + 1 < columns; ++a)
-      point[a] = lines.number((*words)[a]);
+      point[a] = file.number(a);
     content.points.push_back(point);
-    content.radii.push_back(lines.radius((*words)[columns - 1]));
+    content.radii.push_back(file.radius(columns - 1));
   }
   content.is_plane = columns == 3;
   return content;
 }
 
 /// Numbers that go on over as many lines as they like.
-std::vector<double> read_numbers(Lines& lines, std::size_t count, const char* what) {
+std::vector<double> read_numbers(PackingText& file, std::size_t count, const char* what) {
   std::vector<double> numbers;
-  while (numbers.size() < count)
-    for (const std::string_view word : lines.must_follow(what))
-      numbers.push_back(lines.number(word));
+  while (numbers.size() < count) {
+    file.must_follow(what);
+    for (std::size_t word = 0; word < file.words().size(); ++word)
+      numbers.push_back(file.number(word));
+  }
   if (numbers.size() > count)
-    lines.fail(
+    file.fail(
         fmt::format("{} end here with {} numbers instead of {}", what, numbers.size(), count));
   return numbers;
 }
 
-Content read_vtk(Lines& lines) {
-  lines.next(); // the title
-  if (const Words kind = lines.must_follow("ASCII"); kind.front() != "ASCII")
-    lines.fail(fmt::format("legacy VTK must be ASCII, not {}", kind.front()));
+Content read_vtk(PackingText& file) {
+  file.must_follow("a title");
+  file.must_follow("ASCII");
+  if (file.first() != "ASCII")
+    file.fail(fmt::format("legacy VTK must be ASCII, not {}", file.first()));
   Content content;
   bool is_point_data = false;
-  while (const auto words = lines.next_words()) {
-    const std::string_view key = words->front();
-    if (key == "POINTS" && words->size() == 3) {
-      const std::size_t count = lines.count((*words)[1]);
-      const std::vector<double> x = read_numbers(lines, 3 * count, "coordinates");
+  while (file.next()) {
+    const std::string_view key = file.first();
+    if (key == "POINTS" && file.words().size() == 3) {
+      const std::size_t count = file.count(1);
+      const std::vector<double> x = read_numbers(file, 3 * count, "coordinates");
       for (std::size_t i = 0; i < count; ++i)
         content.points.push_back({x[3 * i], x[3 * i + 1], x[3 * i + 2]});
     } else if (key == "POINT_DATA" || key == "CELL_DATA") {
       is_point_data = key == "POINT_DATA";
-    } else if (is_point_data && key == "SCALARS" && words->size() > 1 &&
-               ((*words)[1] == "radius" || (*words)[1] == "Radius")) {
-      lines.must_follow("LOOKUP_TABLE");
-      content.radii = read_numbers(lines, content.points.size(), "radii");
+    } else if (is_point_data && key == "SCALARS" && file.words().size() > 1 &&
+               (file.words()[1] == "radius" || file.words()[1] == "Radius")) {
+      file.must_follow("LOOKUP_TABLE");
+      content.radii = read_numbers(file, content.points.size(), "radii");
       for (const double radius : content.radii)
         if (!(radius > 0.0))
-          lines.fail(fmt::format("the radius {} m must be positive", radius));
+          file.fail(fmt::format("the radius {} m must be positive", radius));
     }
   }
   if (content.radii.size() != content.points.size())
-    lines.fail("the points have no scalar \"radius\"");
+    file.fail("the points have no scalar \"radius\"");
   return content;
 }
 
-Content read_moment(Lines& lines, std::size_t count, const Words& columns) {
+/// The atoms of one moment; the header of their columns is the line before.
+Content read_moment(PackingText& file, std::size_t count) {
+  const std::size_t width = file.words().size() - 2; // after ITEM: ATOMS
   const auto column = [&](std::string_view name) {
-    const auto found = std::find(columns.begin(), columns.end(), name);
-    if (found == columns.end())
-      lines.fail(fmt::format("the atoms have no column \"{}\"", name));
-    return static_cast<std::size_t>(found - columns.begin()) - 2; // after ITEM: ATOMS
+    const auto& words = file.words();
+    const auto found = std::find(words.begin() + 2, words.end(), name);
+    if (found == words.end())
+      file.fail(fmt::format("the atoms have no column \"{}\"", name));
+    return static_cast<std::size_t>(found - words.begin()) - 2;
   };
   const std::array<std::size_t, 4> wanted = {column("x"), column("y"), column("z"),
                                              column("radius")};
-  const std::size_t id = column("id"), width = columns.size() - 2;
+  const std::size_t id = column("id");
   std::vector<std::pair<double, std::array<double, 4>>> atoms;
   for (std::size_t i = 0; i < count; ++i) {
-    const Words words = lines.must_follow("an atom");
-    if (words.size() != width)
-      lines.fail(
-          fmt::format("an atom must have {} values, but this one has {}", width, words.size()));
-    auto& [key, values] = atoms.emplace_back(lines.number(words[id]), std::array<double, 4>{});
+    file.must_follow("an atom");
+    if (file.words().size() != width)
+      file.fail(fmt::format("an atom must have {} values, but this one has {}", width,
+                            file.words().size()));
+    auto& [key, values] = atoms.emplace_back(file.number(id), std::array<double, 4>{});
     for (std::size_t k = 0; k < 3; ++k)
-      values[k] = lines.number(words[wanted[k]]);
-    values[3] = lines.radius(words[wanted[3]]);
+      values[k] = file.number(wanted[k]);
+    values[3] = file.radius(wanted[3]);
   }
   std::stable_sort(atoms.begin(), atoms.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -198,40 +142,32 @@ Content read_moment(Lines& lines, std::size_t count, const Words& columns) {
   return content;
 }
 
-Content read_dump(Lines& lines) {
+/// The last moment of a dump.
+Content read_dump(PackingText& file) {
   Content content;
   std::size_t count = 0;
-  for (auto words = std::optional<Words>(Words{"ITEM:", "TIMESTEP"}); words;
-       words = lines.next_words()) {
-    if (words->size() < 2 || words->front() != "ITEM:")
+  while (file.next()) {
+    if (file.words().size() < 2 || file.first() != "ITEM:")
       continue; // a value of an item that does not matter
-    if ((*words)[1] == "NUMBER")
-      count = lines.count(lines.must_follow("the number of atoms").front());
-    else if ((*words)[1] == "ATOMS") {
-      const std::string header = lines.line(); // the words point into the line, which changes
-      Words columns;
-      for (std::size_t begin = 0; begin < header.size();) {
-        const auto end = std::min(header.find_first_of(" \t\r", begin), header.size());
-        if (end > begin)
-          columns.push_back(std::string_view(header).substr(begin, end - begin));
-        begin = end + 1;
-      }
-      content = read_moment(lines, count, columns);
+    if (file.words()[1] == "NUMBER") {
+      file.must_follow("the number of atoms");
+      count = file.count(0);
+    } else if (file.words()[1] == "ATOMS") {
+      content = read_moment(file, count);
     }
   }
   return content;
 }
 
 Content read_content(const std::filesystem::path& path, std::optional<int> dim) {
-  Lines lines(path);
-  std::ifstream file(path);
   std::string first;
-  std::getline(file, first);
+  std::getline(std::ifstream(path), first);
+  PackingText file(path);
   if (first.starts_with("# vtk DataFile"))
-    return lines.next(), read_vtk(lines);
+    return read_vtk(file);
   if (first.starts_with("ITEM:"))
-    return lines.next(), read_dump(lines);
-  return read_lines(lines, first.starts_with("#format") ? std::nullopt : dim);
+    return read_dump(file);
+  return read_lines(file, dim, first.starts_with("#format x_y_z_r"));
 }
 
 } // namespace
