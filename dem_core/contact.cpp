@@ -151,7 +151,8 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
     const double contact_distance = particles.radius[i] + particles.radius[j];
     const double distance = period.shortest(particles.reference[j] - particles.reference[i]).norm();
     if (distance == 0.0)
-      throw std::invalid_argument(fmt::format("particles {} and {} share a centre", i, j));
+      throw std::invalid_argument(
+          fmt::format("particles {} and {} share a centre", particles.ids[i], particles.ids[j]));
     const bool bonded = distance - contact_distance <= gap_tolerance * contact_distance;
     if (!bonded && distance - contact_distance > skin)
       continue;

@@ -47,8 +47,9 @@ template <int dim>
 Engine<dim>::Engine(const Settings<dim>& settings)
     : material_(settings.material), damping_(settings.damping),
       shear_increment_(settings.shear_increment), initial_(settings.initial),
-      period_(settings.period), particles_(make_particles<dim>(settings.positions, settings.radii,
-                                                               settings.material.density)),
+      period_(settings.period),
+      particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
+                                     settings.ids)),
       boundary_(settings.boundary, particles_.reference),
       start_rotation_(particles_.size(), Rot<dim>::Zero()) {
   check(material_);
@@ -96,7 +97,8 @@ template <int dim> StepLimit Engine<dim>::step_limit() const {
   for (std::int64_t i = 0; i < count; ++i)
     sums[i] = row_sum(contacts_, incident, particles_, boundary_, i);
   const auto largest = std::max_element(sums.begin(), sums.end());
-  return {*largest, fmt::format("particle {}", largest - sums.begin())};
+  const auto i = static_cast<std::size_t>(largest - sums.begin());
+  return {*largest, fmt::format("particle {}", particles_.ids[i])};
 }
 
 template <int dim>
@@ -151,8 +153,11 @@ template <int dim> void Engine<dim>::compute_own_forces() {
   const Increment<dim> increment =
       step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0}
                  : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_};
-  compute_contact_forces(contacts_, particles_, increment, shear_increment_, material_.friction,
-                         loads_);
+  const std::vector<Break> breaks = compute_contact_forces(
+      contacts_, particles_, increment, shear_increment_, material_.friction, loads_);
+  for (const Break& lost : breaks)
+    cracks_.push_back(
+        crack_of(lost, contacts_, particles_, step_, static_cast<double>(step_) * time_step_));
   add_damping(damping_, particles_, loads_);
   forces_are_current_ = true;
 }

@@ -4,6 +4,7 @@
 #include "dem_core/boundary.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
+#include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
@@ -45,6 +46,8 @@ public:
   std::vector<double> stiffness() const;
   std::size_t bonds_at_start() const noexcept { return bonds_at_start_; }
   std::size_t bonds() const noexcept { return contacts_.bonds(); }
+  /// Every bond that broke since the start, in the order of time.
+  std::span<const Crack<dim>> cracks() const noexcept { return cracks_; }
   std::size_t renewals() const noexcept { return renewals_; } // of the list of contacts
   double memory() const;                                      // of the large arrays, bytes
 
@@ -103,6 +106,7 @@ private:
   std::vector<std::uint32_t> touched_;   // particles with an interface force
   std::vector<std::uint8_t> is_touched_; // [n], or empty until there is one
   bool interface_forces_are_old_ = false;
+  std::vector<Crack<dim>> cracks_;
   Work work_;       // until t_n
   Work work_ahead_; // until t_(n+1/2)
 };

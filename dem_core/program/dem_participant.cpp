@@ -5,12 +5,11 @@
 #include "dem_core/engine.hpp"
 #include "dem_core/program/dem_output.hpp"
 #include "dem_core/program/read_settings.hpp"
+#include "dem_core/spatial_order.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
-
-#include <numeric>
 
 namespace kerf::dem {
 
@@ -19,18 +18,21 @@ namespace {
 using coupler::SettingsError;
 using nlohmann::json;
 
-/// Measures the two calls in which an engine works.
-template <int dim> class TimedEngine {
+/// Measures the two calls in which an engine works, and has the cracks written as they happen.
+template <int dim> class RecordedEngine {
 public:
-  explicit TimedEngine(Engine<dim>& engine) : engine_(engine) {}
+  RecordedEngine(Engine<dim>& engine, DemOutput<dim>& output) : engine_(engine), output_(output) {}
 
   void motion(std::span<const std::uint32_t> points, std::span<double> position,
               std::span<double> velocity) const {
     engine_.motion(points, position, velocity);
   }
   void compute_own_forces() {
-    const Stopwatch stopwatch(force_seconds);
-    engine_.compute_own_forces();
+    {
+      const Stopwatch stopwatch(force_seconds);
+      engine_.compute_own_forces();
+    }
+    output_.write_cracks();
   }
   void own_forces(std::span<const std::uint32_t> points, std::span<double> force) const {
     engine_.own_forces(points, force);
@@ -47,10 +49,12 @@ public:
 
 private:
   Engine<dim>& engine_;
+  DemOutput<dim>& output_;
 };
 
 template <int dim> Engine<dim> make_engine(const json& table, const json& case_table) {
-  const Settings<dim> settings = read_settings<dim>(table, case_table);
+  Settings<dim> settings = read_settings<dim>(table, case_table);
+  put_in_spatial_order(settings);
   try {
     return Engine<dim>(settings);
   } catch (const std::invalid_argument& error) {
@@ -61,9 +65,8 @@ template <int dim> Engine<dim> make_engine(const json& table, const json& case_t
 template <int dim> coupler::Declaration declare(const Engine<dim>& engine) {
   coupler::Declaration d;
   d.dimension = dim;
-  d.ids.resize(engine.size());
-  std::iota(d.ids.begin(), d.ids.end(), 0);
   const Particles<dim>& p = engine.particles();
+  d.ids.assign(p.ids.begin(), p.ids.end());
   for (const Vec<dim>& x : p.reference)
     d.positions.insert(d.positions.end(), x.begin(), x.end());
   d.stiffness = engine.stiffness();
@@ -102,12 +105,12 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
   }
   engine.start(schedule.time_step);
   DemOutput<dim> output(engine, assignment.run_folder, assignment.name);
-  TimedEngine<dim> timed(engine);
-  coupler::run_engine(timed, broker, plan, schedule, output);
+  RecordedEngine<dim> recorded(engine, output);
+  coupler::run_engine(recorded, broker, plan, schedule, output);
 
   const json summary = {{"seconds",
-                         {{"forces", timed.force_seconds},
-                          {"integrate", timed.integrate_seconds},
+                         {{"forces", recorded.force_seconds},
+                          {"integrate", recorded.integrate_seconds},
                           {"output", output.seconds()}}},
                         {"threads", omp_get_max_threads()},
                         {"particles", engine.size()},
