@@ -102,7 +102,9 @@ template <int dim> struct Contacts {
 
 /// Contacts at the start: bonds where the gap is within the tolerance, each free of stress at the
 /// distance it has in the reference configuration, and all other pairs within the skin.
-/// @throws std::invalid_argument when two particles share a centre or a period is too short
+/// @throws std::invalid_argument when two centres are closer than half of the sum of the radii, or
+/// a
+///         period is too short
 template <int dim>
 Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
                             double gap_tolerance, double skin, const Period<dim>& period);

@@ -1,9 +1,11 @@
 #include "dem_core/engine.hpp"
 
 #include "common/ordered_sum.hpp"
+#include "dem_core/balance.hpp"
 #include "dem_core/damping.hpp"
 #include "dem_core/initial.hpp"
 #include "dem_core/integrate.hpp"
+#include "dem_core/probe.hpp"
 #include "dem_core/time_step.hpp"
 
 #include <fmt/format.h>
@@ -237,9 +239,21 @@ template <int dim> Vec<dim> Engine<dim>::momentum() const {
   return dem::momentum(particles_, loads_, boundary_, time_step_);
 }
 
+template <int dim> double Engine<dim>::unbalanced_force() const {
+  return dem::unbalanced_force(contacts_, particles_, boundary_, loads_);
+}
+
 template <int dim> std::optional<std::uint32_t> Engine<dim>::first_not_finite() const {
   for (std::uint32_t i = 0; i < size(); ++i)
     if (!particles_.displacement[i].allFinite() || !particles_.angular_velocity[i].allFinite())
+      return i;
+  return std::nullopt;
+}
+
+template <int dim>
+std::optional<std::uint32_t> Engine<dim>::first_outside(const Box<dim>& box) const {
+  for (std::uint32_t i = 0; i < size(); ++i)
+    if (!contains(box, period_, particles_.position(i)))
       return i;
   return std::nullopt;
 }

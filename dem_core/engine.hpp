@@ -41,6 +41,7 @@ public:
   /// As of the last compute_own_forces().
   const Contacts<dim>& contacts() const noexcept { return contacts_; }
   const Boundary<dim>& boundary() const noexcept { return boundary_; }
+  const Period<dim>& period() const noexcept { return period_; }
 
   /// Mean normal stiffness of the bonds of each particle; of the material if it has none, N/m.
   std::vector<double> stiffness() const;
@@ -78,9 +79,13 @@ public:
   /// Of t_n, after integrate() of step n.
   Energies energies() const;
   Vec<dim> momentum() const;
+  /// Mean resultant over mean contact force at t_n, after integrate(); see balance.hpp.
+  double unbalanced_force() const;
 
   /// First particle whose position or rotation rate is not finite.
   std::optional<std::uint32_t> first_not_finite() const;
+  /// First particle whose centre is outside of a box.
+  std::optional<std::uint32_t> first_outside(const Box<dim>& box) const;
 
 private:
   void book_step();

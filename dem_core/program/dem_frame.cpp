@@ -1,5 +1,7 @@
 #include "dem_core/program/dem_frame.hpp"
 
+#include "dem_core/stress.hpp"
+
 #include <algorithm>
 #include <compare>
 #include <numeric>
@@ -88,6 +90,8 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
   const auto fragment =
       of_particles([&](std::uint32_t i) { return std::int64_t{fragments.of[i]}; });
 
+  const auto stress = from(particle_stress(c, p));
+
   const std::vector<ContactRow> rows = contact_rows(c, order);
   const auto of_contacts = [&](const auto& values) {
     return column(rows, [&](const ContactRow& row) { return values[row.contact]; });
@@ -114,7 +118,8 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
        .point_fields = {field("id", id), field("radius", radius), field("mass", mass),
                         field("displacement", displacement), field("velocity", velocity),
                         field("angular_velocity", angular_velocity), field("weight", weight),
-                        field("boundary", boundary), field("fragment", fragment)},
+                        field("boundary", boundary), field("fragment", fragment),
+                        field("stress", stress)},
        .cell_fields = {}},
       {.name = "contacts",
        .positions = {},

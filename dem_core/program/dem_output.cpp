@@ -22,12 +22,14 @@ template <int dim> std::vector<Column> history_columns() {
                                  {"damping_dissipation", "J"},
                                  {"friction_dissipation", "J"},
                                  {"fracture_dissipation", "J"},
+                                 {"particles", "1"},
                                  {"bonds", "1"},
                                  {"broken_bonds", "1"},
                                  {"tension_cracks", "1"},
                                  {"shear_cracks", "1"},
                                  {"fragments", "1"},
                                  {"largest_fragment", "1"},
+                                 {"unbalanced_force", "1"},
                                  {"momentum_x", "N s"},
                                  {"momentum_y", "N s"}};
   if (dim == 3)
@@ -38,12 +40,15 @@ template <int dim> std::vector<Column> history_columns() {
 } // namespace
 
 template <int dim>
-DemOutput<dim>::DemOutput(Engine<dim>& engine, const std::filesystem::path& run_folder,
-                          const std::string& name)
+DemOutput<dim>::DemOutput(Engine<dim>& engine, const Watch<dim>& watch,
+                          const std::filesystem::path& run_folder, const std::string& name)
     : engine_(engine), frames_(run_folder, name, dim),
       history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()),
-      cracks_(run_folder / "history" / (name + "_cracks.csv")),
-      fragments_(find_fragments(engine.contacts(), engine.particles())) {}
+      cracks_(run_folder / "history" / (name + "_cracks.csv")), domain_(watch.domain),
+      fragments_(find_fragments(engine.contacts(), engine.particles())) {
+  for (const Probe<dim>& probe : watch.probes)
+    probes_.emplace_back(run_folder / "history" / (name + "_" + probe.name + ".csv"), probe.box);
+}
 
 template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double time) {
   engine_.compute_own_forces();
@@ -67,15 +72,19 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
                              e.damping_dissipation,
                              e.friction_dissipation,
                              e.fracture_dissipation,
+                             static_cast<double>(engine_.size()),
                              static_cast<double>(bonds),
                              static_cast<double>(engine_.bonds_at_start() - bonds),
                              static_cast<double>(cracks_.tension()),
                              static_cast<double>(cracks_.shear()),
                              static_cast<double>(fragments().count()),
-                             fragments().largest_share()};
+                             fragments().largest_share(),
+                             engine_.unbalanced_force()};
   const Vec<dim> momentum = engine_.momentum();
   row.insert(row.end(), momentum.begin(), momentum.end());
   history_.append(row);
+  for (ProbeFile<dim>& probe : probes_)
+    probe.write(step, time, engine_);
 }
 
 template <int dim> void DemOutput<dim>::write_cracks() {
@@ -88,6 +97,15 @@ template <int dim> void DemOutput<dim>::check(std::uint64_t step, double time) c
     throw std::runtime_error(
         fmt::format("particle {} has no finite position or velocity any more at t = {} s (step {})",
                     engine_.particles().ids[*lost], time, step));
+  if (!domain_)
+    return;
+  if (const auto outside = engine_.first_outside(*domain_)) {
+    const Vec<dim> x = engine_.particles().position(*outside);
+    throw std::runtime_error(fmt::format("particle {} has left the domain at t = {} s (step {}): "
+                                         "it is at ({:.6g}) m",
+                                         engine_.particles().ids[*outside], time, step,
+                                         fmt::join(x.begin(), x.end(), ", ")));
+  }
 }
 
 /// They change with the bonds only.

@@ -93,6 +93,7 @@ template <int dim> coupler::Limits limits_of(const Engine<dim>& engine, const co
 
 template <int dim>
 int run(coupler::Participant& broker, const json& table, const json& case_table) {
+  const Watch<dim> watch = read_watch<dim>(table);
   Engine<dim> engine = make_engine<dim>(table, case_table);
   const coupler::Plan& plan = broker.declare(declare(engine));
   engine.set_weights(plan.weights);
@@ -104,7 +105,7 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
     return 0;
   }
   engine.start(schedule.time_step);
-  DemOutput<dim> output(engine, assignment.run_folder, assignment.name);
+  DemOutput<dim> output(engine, watch, assignment.run_folder, assignment.name);
   RecordedEngine<dim> recorded(engine, output);
   coupler::run_engine(recorded, broker, plan, schedule, output);
 
