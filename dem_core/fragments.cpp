@@ -20,7 +20,7 @@ public:
     return i;
   }
   void join(std::uint32_t i, std::uint32_t j) {
-    const auto [low, high] = std::minmax(root_of(i), root_of(j));
+    const auto [low, high] = std::minmax({root_of(i), root_of(j)});
     parent_[high] = low;
   }
 

@@ -29,7 +29,7 @@ void CrackFile<dim>::write(std::span<const Crack<dim>> all, std::span<const std:
     const Crack<dim>& crack = all[written_];
     // In the file the first particle is the one with the smaller id.
     const bool turned = ids[crack.first] > ids[crack.second];
-    const auto [first, second] = std::minmax(ids[crack.first], ids[crack.second]);
+    const auto [first, second] = std::minmax({ids[crack.first], ids[crack.second]});
     const Vec<dim> normal = turned ? Vec<dim>(-crack.normal) : crack.normal;
     std::vector<double> row = {static_cast<double>(crack.step), crack.time,
                                static_cast<double>(first), static_cast<double>(second)};

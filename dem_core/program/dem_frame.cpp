@@ -37,7 +37,7 @@ std::vector<ContactRow> contact_rows(const Contacts<dim>& contacts, const RowOrd
   std::vector<ContactRow> rows(contacts.size());
   for (std::uint32_t k = 0; k < rows.size(); ++k) {
     const auto [first, second] =
-        std::minmax(order.row[contacts.first[k]], order.row[contacts.second[k]]);
+        std::minmax({order.row[contacts.first[k]], order.row[contacts.second[k]]});
     rows[k] = {first, second, k, order.row[contacts.first[k]] != first};
   }
   std::sort(rows.begin(), rows.end());
