@@ -21,19 +21,21 @@ template <int dim> struct ContactSum {
   }
 };
 
+/// @param is_inside  [n] for each particle
 template <int dim>
 ContactSum<dim> sum_contacts(const Box<dim>& box, const Period<dim>& period,
-                             const Contacts<dim>& contacts, const Particles<dim>& particles) {
+                             const Contacts<dim>& contacts, const Particles<dim>& particles,
+                             const std::vector<std::uint8_t>& is_inside) {
   return ordered_sum(contacts.size(), [&](std::size_t k) {
     ContactSum<dim> one;
     if (!contacts.bonded[k] && contacts.normal_force[k] == 0.0)
       return one;
-    const Vec<dim> x_i = particles.position(contacts.first[k]);
-    const Vec<dim> x_j = particles.position(contacts.second[k]);
-    const Vec<dim> branch = span_of(contacts, particles, k).branch;
-    if (contains<dim>(box, period, x_i + contacts.share[k] * branch))
+    const std::uint32_t i = contacts.first[k], j = contacts.second[k];
+    one.ends = is_inside[i] + is_inside[j];
+    const Vec<dim> branch =
+        contacts.reference_branch[k] + particles.displacement[j] - particles.displacement[i];
+    if (contains<dim>(box, period, particles.position(i) + contacts.share[k] * branch))
       one.dyad = symmetric_part<dim>(branch * contact_force(contacts, particles, k).transpose());
-    one.ends = (contains(box, period, x_i) ? 1.0 : 0.0) + (contains(box, period, x_j) ? 1.0 : 0.0);
     return one;
   });
 }
@@ -44,16 +46,18 @@ template <int dim>
 Reading<dim> read_probe(const Box<dim>& box, const Period<dim>& period,
                         const Contacts<dim>& contacts, const Particles<dim>& particles) {
   std::vector<std::uint32_t> inside;
+  std::vector<std::uint8_t> is_inside(particles.size(), 0);
   double solid = 0.0;               // m³
   Vec<dim> flow = Vec<dim>::Zero(); // sum of volume times velocity, m³ m/s
   for (std::uint32_t i = 0; i < particles.size(); ++i)
     if (contains(box, period, particles.position(i))) {
       const double volume = volume_of_radius<dim>(particles.radius[i]);
       inside.push_back(i);
+      is_inside[i] = 1;
       solid += volume;
       flow += volume * particles.velocity[i];
     }
-  const ContactSum<dim> sum = sum_contacts(box, period, contacts, particles);
+  const ContactSum<dim> sum = sum_contacts(box, period, contacts, particles, is_inside);
   const double volume = (box.upper - box.lower).prod(); // m³
 
   Reading<dim> reading;
