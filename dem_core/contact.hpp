@@ -112,7 +112,8 @@ template <int dim> struct Contacts {
 /// Contacts at the start: bonds where the gap is within the tolerance, each free of stress at the
 /// distance it has in the reference configuration, and all other pairs within the skin.
 /// @param gap_tolerance  over r_i + r_j; nothing: no bonds
-/// @throws std::invalid_argument when two particles share a centre or a period is too short
+/// @throws std::invalid_argument when two centres are closer than half of the sum of the radii, or
+///         a period is too short
 template <int dim>
 Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
                             std::optional<double> gap_tolerance, double skin,

@@ -1,10 +1,12 @@
 #include "dem_core/engine.hpp"
 
 #include "common/ordered_sum.hpp"
+#include "dem_core/balance.hpp"
 #include "dem_core/contact_constants.hpp"
 #include "dem_core/damping.hpp"
 #include "dem_core/initial.hpp"
 #include "dem_core/integrate.hpp"
+#include "dem_core/probe.hpp"
 #include "dem_core/time_step.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +34,9 @@ template <int dim>
 Engine<dim>::Engine(const Settings<dim>& settings)
     : material_(settings.material), damping_(settings.damping),
       shear_increment_(settings.shear_increment), initial_(settings.initial),
-      period_(settings.period), particles_(make_particles<dim>(settings.positions, settings.radii,
-                                                               settings.material.density)),
+      period_(settings.period),
+      particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
+                                     settings.ids)),
       boundary_(settings.boundary, particles_.reference),
       start_rotation_(particles_.size(), Rot<dim>::Zero()) {
   check(material_);
@@ -83,8 +86,9 @@ template <int dim> StepLimit Engine<dim>::step_limit() const {
   for (std::int64_t i = 0; i < count; ++i)
     sums[i] = row_sum(contacts_, incident, particles_, boundary_, i);
   const auto largest = std::max_element(sums.begin(), sums.end());
+  const auto i = static_cast<std::size_t>(largest - sums.begin());
   return {with_dashpots(*largest, dashpot_time(contacts_, particles_)),
-          fmt::format("particle {}", largest - sums.begin())};
+          fmt::format("particle {}", particles_.ids[i])};
 }
 
 template <int dim>
@@ -141,8 +145,11 @@ template <int dim> void Engine<dim>::compute_own_forces() {
       step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0, 0.0}
                  : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_,
                                   time_step_};
-  compute_contact_forces(contacts_, particles_, increment, shear_increment_, material_.friction,
-                         loads_);
+  const std::vector<Break> breaks = compute_contact_forces(
+      contacts_, particles_, increment, shear_increment_, material_.friction, loads_);
+  for (const Break& lost : breaks)
+    cracks_.push_back(
+        crack_of(lost, contacts_, particles_, step_, static_cast<double>(step_) * time_step_));
   add_damping(damping_, particles_, loads_);
   forces_are_current_ = true;
 }
@@ -223,9 +230,21 @@ template <int dim> Vec<dim> Engine<dim>::momentum() const {
   return dem::momentum(particles_, loads_, boundary_, time_step_);
 }
 
+template <int dim> double Engine<dim>::unbalanced_force() const {
+  return dem::unbalanced_force(contacts_, particles_, boundary_, loads_);
+}
+
 template <int dim> std::optional<std::uint32_t> Engine<dim>::first_not_finite() const {
   for (std::uint32_t i = 0; i < size(); ++i)
     if (!particles_.displacement[i].allFinite() || !particles_.angular_velocity[i].allFinite())
+      return i;
+  return std::nullopt;
+}
+
+template <int dim>
+std::optional<std::uint32_t> Engine<dim>::first_outside(const Box<dim>& box) const {
+  for (std::uint32_t i = 0; i < size(); ++i)
+    if (!contains(box, period_, particles_.position(i)))
       return i;
   return std::nullopt;
 }

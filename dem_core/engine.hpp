@@ -4,6 +4,7 @@
 #include "dem_core/boundary.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
+#include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
@@ -40,11 +41,14 @@ public:
   /// As of the last compute_own_forces().
   const Contacts<dim>& contacts() const noexcept { return contacts_; }
   const Boundary<dim>& boundary() const noexcept { return boundary_; }
+  const Period<dim>& period() const noexcept { return period_; }
 
   /// Mean normal stiffness of the bonds of each particle; of the material if it has none, N/m.
   std::vector<double> stiffness() const;
   std::size_t bonds_at_start() const noexcept { return bonds_at_start_; }
   std::size_t bonds() const noexcept { return contacts_.bonds(); }
+  /// Every bond that broke since the start, in the order of time.
+  std::span<const Crack<dim>> cracks() const noexcept { return cracks_; }
   std::size_t renewals() const noexcept { return renewals_; } // of the list of contacts
   double memory() const;                                      // of the large arrays, bytes
 
@@ -75,9 +79,13 @@ public:
   /// Of t_n, after integrate() of step n.
   Energies energies() const;
   Vec<dim> momentum() const;
+  /// Mean resultant over mean contact force at t_n, after integrate(); see balance.hpp.
+  double unbalanced_force() const;
 
   /// First particle whose position or rotation rate is not finite.
   std::optional<std::uint32_t> first_not_finite() const;
+  /// First particle whose centre is outside of a box.
+  std::optional<std::uint32_t> first_outside(const Box<dim>& box) const;
 
 private:
   void book_step();
@@ -103,6 +111,7 @@ private:
   std::vector<std::uint32_t> touched_;   // particles with an interface force
   std::vector<std::uint8_t> is_touched_; // [n], or empty until there is one
   bool interface_forces_are_old_ = false;
+  std::vector<Crack<dim>> cracks_;
   Work work_;       // until t_n
   Work work_ahead_; // until t_(n+1/2)
 };

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -25,6 +27,7 @@ template <int dim> struct Particles {
   std::vector<Vec<dim>> reference; // m
   std::vector<double> radius;      // m
   double density = 0.0;            // kg/m³
+  std::vector<std::uint32_t> ids;  // what the user calls them
 
   std::vector<double> weight;  // 1 - alpha at the centre, > 1 beyond the zone; empty: all are one
   std::vector<double> mass;    // blended, kg; pi r² rho or 4/3 pi r³ rho
@@ -38,12 +41,21 @@ template <int dim> struct Particles {
   Vec<dim> position(std::size_t i) const { return reference[i] + displacement[i]; }
 };
 
+/// Area of a disc, m², or volume of a sphere, m³.
+template <int dim> double volume_of_radius(double radius) {
+  if constexpr (dim == 2)
+    return std::numbers::pi * radius * radius;
+  else
+    return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
+
 /// Particles at rest with weight one.
+/// @param ids  [n] what the user calls them, in error messages too; empty: their index
 /// @throws std::invalid_argument when there are none, the sizes differ, a coordinate is not
 ///         finite, or a radius or the density is not positive
 template <int dim>
 Particles<dim> make_particles(std::span<const Vec<dim>> positions, std::span<const double> radii,
-                              double density);
+                              double density, std::span<const std::uint32_t> ids = {});
 
 /// Scales masses and moments of inertia by bounded_share().
 /// @param weight  [n] 1 - alpha of each particle; empty: one everywhere

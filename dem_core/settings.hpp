@@ -100,6 +100,7 @@ template <int dim> struct InitialCondition {
 template <int dim> struct Settings {
   std::vector<Vec<dim>> positions; // [n] centres in the reference configuration, m
   std::vector<double> radii;       // [n] m
+  std::vector<std::uint32_t> ids;  // [n] what the user calls them; empty: their index
   Material material;
   bool bonds = true;           // between neighbours at the start
   double gap_tolerance = 1e-3; // bonded when distance - (r_i + r_j) <= gap_tolerance (r_i + r_j)

@@ -52,7 +52,22 @@ template <int dim> std::vector<std::uint32_t> spatial_order(std::span<const Vec<
   return order;
 }
 
+template <int dim> void put_in_spatial_order(Settings<dim>& settings) {
+  const std::vector<std::uint32_t> order = spatial_order<dim>(settings.positions);
+  const auto arranged = [&](const auto& values) {
+    auto result = values;
+    for (std::size_t k = 0; k < order.size(); ++k)
+      result[k] = values[order[k]];
+    return result;
+  };
+  settings.positions = arranged(settings.positions);
+  settings.radii = arranged(settings.radii);
+  settings.ids = settings.ids.empty() ? order : arranged(settings.ids);
+}
+
 template std::vector<std::uint32_t> spatial_order<2>(std::span<const Vec<2>>);
 template std::vector<std::uint32_t> spatial_order<3>(std::span<const Vec<3>>);
+template void put_in_spatial_order<2>(Settings<2>&);
+template void put_in_spatial_order<3>(Settings<3>&);
 
 } // namespace kerf::dem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/vec.hpp"
+#include "dem_core/settings.hpp"
 
 #include <cstdint>
 #include <span>
@@ -15,5 +16,8 @@ namespace kerf::dem {
 /// @return [n] which particle comes where
 /// @see G.M. Morton, IBM technical report (1966)
 template <int dim> std::vector<std::uint32_t> spatial_order(std::span<const Vec<dim>> positions);
+
+/// Arranges the particles of a model in their spatial order. Each keeps its id.
+template <int dim> void put_in_spatial_order(Settings<dim>& settings);
 
 } // namespace kerf::dem

@@ -50,8 +50,10 @@ private:
                     {{"linear", {"normal_stiffness", "tangential_stiffness"}},
                      {"linear_by_size", {"contact_modulus", "stiffness_ratio"}},
                      {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}});
-    } else
+      check_probes(key, participant["probes"]);
+    } else {
       check_elastic(key + ".material", participant["material"]);
+    }
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
     for (std::size_t k = 0; k < participant["initial"].size(); ++k)
@@ -147,6 +149,23 @@ private:
       if (!table[name].is_null())
         found.push_back(name);
     return found;
+  }
+
+  /// Each has a file of its own, and so have the cracks.
+  void check_probes(const string& participant, const json& probes) {
+    std::set<string> names = {"cracks"};
+    for (std::size_t k = 0; k < probes.size(); ++k)
+      check_name(fmt::format("{}.probes[{}]", participant, k), probes[k]["name"],
+                 "time series of " + participant, names);
+    for (const string& name : names) {
+      const string file = participant.substr(participant.find('.') + 1) + "_" + name;
+      for (const auto* others : {&participants_, &couplings_})
+        if (std::find(others->begin(), others->end(), file) != others->end())
+          problems_.add(participant,
+                        fmt::format("\"{}\" of {} would have the same file as \"{}\".", name,
+                                    participant, file),
+                        fmt::format("give \"{}\" another name.", file));
+    }
   }
 
   void check_elastic(const string& key, const json& material) {
@@ -267,9 +286,24 @@ private:
       if (!measure["coupling"].is_null())
         check_known(key + ".coupling", measure["coupling"], "coupling", couplings_);
       check_expectation(key + ".expect", measure["expect"]);
+      if (measure["kind"] == "coordination_number")
+        check_coordination(key, measure);
       if (measure["kind"] == "reflected_energy" || measure["kind"] == "transmitted_energy")
         check_wave_energy(key, measure);
     }
+  }
+
+  /// Elements have no neighbours that count.
+  void check_coordination(const string& key, const json& measure) {
+    const json& participants = settings_["participants"];
+    if (measure["participant"].is_null())
+      return;
+    const auto found = participants.find(measure["participant"].get<string>());
+    if (found != participants.end() && (*found)["kind"] != "dem")
+      problems_.add(key + ".participant",
+                    fmt::format("{}.participant = {} has no particles.", key,
+                                value_text(measure["participant"])),
+                    "name a participant of kind dem.");
   }
 
   /// These two are taken from the last frame of a participant.

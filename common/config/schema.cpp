@@ -55,7 +55,7 @@ std::vector<Key> coupling_and_measure_keys() {
   using enum Type;
   const Allowed kinds =
       one_of({"reflected_energy", "transmitted_energy", "energy_drift", "energy_balance_error",
-              "momentum_residual", "constraint_violation", "wall_time"});
+              "momentum_residual", "constraint_violation", "coordination_number", "wall_time"});
   return {
       {"couplings", "", list, "", empty, anything, "coupling", "a connection of two participants"},
       {"couplings[].name", "", name, "", required, anything, R"("joint")", "a name, used once"},

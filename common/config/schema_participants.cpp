@@ -119,6 +119,21 @@ std::vector<Key> model_of_particles() {
   };
 }
 
+std::vector<Key> watch_of_particles() {
+  using enum Type;
+  return {
+      {"participants.*.domain", "dem", box, "m", none, anything, "[[-1.0, -1.0], [1.0, 1.0]]",
+       "the lower and upper corner of a box that no particle's centre may leave; the run stops "
+       "then"},
+      {"participants.*.probes", "dem", list, "", empty, anything, "probe",
+       "a box whose mean stress, strain and motion are recorded"},
+      {"participants.*.probes[].name", "dem", name, "", required, anything, R"("middle")",
+       "a name, used once"},
+      {"participants.*.probes[].box", "dem", box, "m", required, anything,
+       "[[1e-3, 1e-3], [4e-3, 6e-3]]", "its lower and upper corner, fixed in space"},
+  };
+}
+
 std::vector<Key> model_of_mesh() {
   using enum Type;
   const Range poisson{.least = -1.0, .most = 0.5, .without_least = true, .without_most = true};
@@ -206,7 +221,7 @@ std::vector<Key> motion_keys(const std::string& kind) {
 
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
-                 motion_keys("dem")});
+                 motion_keys("dem"), watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {

@@ -108,6 +108,13 @@ double energy_balance_error(const Histories& histories, const nlohmann::json& m)
   return error / scale;
 }
 
+/// Mean number of bonds of a particle at the start.
+double coordination_number(const Histories& histories, const nlohmann::json& m) {
+  const nlohmann::json& who = m.at("participant");
+  return 2.0 * histories.participants(who, {"bonds", "broken_bonds"}).front() /
+         histories.participants(who, {"particles"}).front();
+}
+
 /// What entered as a wave: all that the reference has at the end, or, without a reference, the
 /// energy at the start and the work done by prescribed motion.
 double incident_energy(const Histories& histories, const nlohmann::json& m) {
@@ -149,6 +156,8 @@ std::vector<Measure> measure(const CaseFile& case_file, const std::filesystem::p
         [&](const nlohmann::json& m) {
           return histories.largest_of_couplings(m.at("coupling"), "constraint_violation");
         }}},
+      {"coordination_number",
+       {"1", [&](const nlohmann::json& m) { return coordination_number(histories, m); }}},
       {"wall_time", {"s", [&](const nlohmann::json&) { return wall_time; }}},
   };
 

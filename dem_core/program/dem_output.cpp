@@ -1,6 +1,7 @@
 #include "dem_core/program/dem_output.hpp"
 
 #include "common/stopwatch.hpp"
+#include "dem_core/program/dem_frame.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,14 @@ template <int dim> std::vector<Column> history_columns() {
                                  {"damping_dissipation", "J"},
                                  {"friction_dissipation", "J"},
                                  {"fracture_dissipation", "J"},
+                                 {"particles", "1"},
                                  {"bonds", "1"},
                                  {"broken_bonds", "1"},
+                                 {"tension_cracks", "1"},
+                                 {"shear_cracks", "1"},
+                                 {"fragments", "1"},
+                                 {"largest_fragment", "1"},
+                                 {"unbalanced_force", "1"},
                                  {"momentum_x", "N s"},
                                  {"momentum_y", "N s"}};
   if (dim == 3)
@@ -30,97 +37,30 @@ template <int dim> std::vector<Column> history_columns() {
   return columns;
 }
 
-/// The numbers of an array of small vectors, which lie one behind the other.
-template <class Vector> std::span<const double> flat(const std::vector<Vector>& vectors) {
-  static_assert(sizeof(Vector) == Vector::SizeAtCompileTime * sizeof(double));
-  if (vectors.empty())
-    return {};
-  return {vectors.front().data(), vectors.size() * Vector::SizeAtCompileTime};
-}
-
-std::vector<std::int64_t> integers(const std::vector<std::uint8_t>& flags) {
-  return {flags.begin(), flags.end()};
-}
-
 } // namespace
 
 template <int dim>
-DemOutput<dim>::DemOutput(Engine<dim>& engine, const std::filesystem::path& run_folder,
-                          const std::string& name)
+DemOutput<dim>::DemOutput(Engine<dim>& engine, const Watch<dim>& watch,
+                          const std::filesystem::path& run_folder, const std::string& name)
     : engine_(engine), frames_(run_folder, name, dim),
-      history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()) {}
+      history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()),
+      cracks_(run_folder / "history" / (name + "_cracks.csv")), domain_(watch.domain),
+      fragments_(find_fragments(engine.contacts(), engine.particles())) {
+  for (const Probe<dim>& probe : watch.probes)
+    probes_.emplace_back(run_folder / "history" / (name + "_" + probe.name + ".csv"), probe.box);
+}
 
 template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double time) {
   engine_.compute_own_forces();
+  write_cracks();
+  check(step, time);
   const Stopwatch stopwatch(seconds_);
-  const Particles<dim>& p = engine_.particles();
-  const Contacts<dim>& c = engine_.contacts();
-
-  std::vector<Vec<dim>> position(p.size());
-  std::vector<std::int64_t> id(p.size()), boundary(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    position[i] = p.position(i);
-    id[i] = static_cast<std::int64_t>(i);
-    boundary[i] = engine_.boundary().of(i) != nullptr ? 1 : 0;
-  }
-  std::vector<std::uint32_t> pairs;
-  for (std::size_t k = 0; k < c.size(); ++k)
-    pairs.insert(pairs.end(), {c.first[k], c.second[k]});
-  const std::vector<std::int64_t> bonded = integers(c.bonded);
-  std::vector<Vec<dim>> tangential_force(c.size());
-  for (std::size_t k = 0; k < c.size(); ++k)
-    tangential_force[k] = shear_force(c, p, k);
-  const auto expanded = [&](const PerContact& constant) {
-    std::vector<double> values(c.size());
-    for (std::size_t k = 0; k < c.size(); ++k)
-      values[k] = constant[k];
-    return values;
-  };
-  const std::vector<double> normal_stiffness = expanded(c.normal_stiffness);
-  const std::vector<double> tangential_stiffness = expanded(c.tangential_stiffness);
-  const std::vector<double> contact_weight = expanded(c.weight);
-  const std::vector<double> weight =
-      p.weight.empty() ? std::vector<double>(p.size(), 1.0) : p.weight;
-
-  Grid particles{.name = "particles",
-                 .positions = flat(position),
-                 .points_of = {},
-                 .cells = Cells::points,
-                 .connectivity = {},
-                 .point_fields = {},
-                 .cell_fields = {}};
-  particles.point_fields = {{"id", 1, std::span<const std::int64_t>(id)},
-                            {"radius", 1, std::span<const double>(p.radius)},
-                            {"mass", 1, std::span<const double>(p.mass)},
-                            {"displacement", dim, flat(p.displacement)},
-                            {"velocity", dim, flat(p.velocity)},
-                            {"angular_velocity", rotations<dim>, flat(p.angular_velocity)},
-                            {"weight", 1, std::span<const double>(weight)},
-                            {"boundary", 1, std::span<const std::int64_t>(boundary)}};
-  Grid contacts{.name = "contacts",
-                .positions = {},
-                .points_of = "particles",
-                .cells = Cells::segments,
-                .connectivity = pairs,
-                .point_fields = {},
-                .cell_fields = {}};
-  contacts.cell_fields = {
-      {"bonded", 1, std::span<const std::int64_t>(bonded)},
-      {"normal_force", 1, std::span<const double>(c.normal_force)},
-      {"tangential_force", dim, flat(tangential_force)},
-      {"normal_stiffness", 1, std::span<const double>(normal_stiffness)},
-      {"tangential_stiffness", 1, std::span<const double>(tangential_stiffness)},
-      {"weight", 1, std::span<const double>(contact_weight)}};
-  const Grid grids[] = {std::move(particles), std::move(contacts)};
-  frames_.write(step, time, grids);
+  write_dem_frame(frames_, step, time, engine_, fragments());
 }
 
 template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double time) {
+  check(step, time);
   const Stopwatch stopwatch(seconds_);
-  if (const auto lost = engine_.first_not_finite())
-    throw std::runtime_error(
-        fmt::format("particle {} has no finite position or velocity any more at t = {} s (step {})",
-                    *lost, time, step));
   const Energies e = engine_.energies();
   const std::size_t bonds = engine_.bonds();
   std::vector<double> row = {static_cast<double>(step),
@@ -132,11 +72,49 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
                              e.damping_dissipation,
                              e.friction_dissipation,
                              e.fracture_dissipation,
+                             static_cast<double>(engine_.size()),
                              static_cast<double>(bonds),
-                             static_cast<double>(engine_.bonds_at_start() - bonds)};
+                             static_cast<double>(engine_.bonds_at_start() - bonds),
+                             static_cast<double>(cracks_.tension()),
+                             static_cast<double>(cracks_.shear()),
+                             static_cast<double>(fragments().count()),
+                             fragments().largest_share(),
+                             engine_.unbalanced_force()};
   const Vec<dim> momentum = engine_.momentum();
   row.insert(row.end(), momentum.begin(), momentum.end());
   history_.append(row);
+  for (ProbeFile<dim>& probe : probes_)
+    probe.write(step, time, engine_);
+}
+
+template <int dim> void DemOutput<dim>::write_cracks() {
+  const Stopwatch stopwatch(seconds_);
+  cracks_.write(engine_.cracks(), engine_.particles().ids);
+}
+
+template <int dim> void DemOutput<dim>::check(std::uint64_t step, double time) const {
+  if (const auto lost = engine_.first_not_finite())
+    throw std::runtime_error(
+        fmt::format("particle {} has no finite position or velocity any more at t = {} s (step {})",
+                    engine_.particles().ids[*lost], time, step));
+  if (!domain_)
+    return;
+  if (const auto outside = engine_.first_outside(*domain_)) {
+    const Vec<dim> x = engine_.particles().position(*outside);
+    throw std::runtime_error(fmt::format("particle {} has left the domain at t = {} s (step {}): "
+                                         "it is at ({:.6g}) m",
+                                         engine_.particles().ids[*outside], time, step,
+                                         fmt::join(x.begin(), x.end(), ", ")));
+  }
+}
+
+/// They change with the bonds only.
+template <int dim> const Fragments& DemOutput<dim>::fragments() {
+  if (cracks_of_fragments_ != engine_.cracks().size()) {
+    fragments_ = find_fragments(engine_.contacts(), engine_.particles());
+    cracks_of_fragments_ = engine_.cracks().size();
+  }
+  return fragments_;
 }
 
 template class DemOutput<2>;

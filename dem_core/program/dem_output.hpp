@@ -1,9 +1,13 @@
-// What kerf-dem writes into the run folder: frames of particles and contacts, and a history.
+// What kerf-dem writes into the run folder: frames of particles and contacts, a history, cracks.
 #pragma once
 
 #include "common/history.hpp"
 #include "common/results.hpp"
 #include "dem_core/engine.hpp"
+#include "dem_core/fragments.hpp"
+#include "dem_core/program/crack_file.hpp"
+#include "dem_core/program/probe_file.hpp"
+#include "dem_core/program/watch.hpp"
 
 #include <filesystem>
 #include <string>
@@ -12,23 +16,38 @@ namespace kerf::dem {
 
 template <int dim> class DemOutput {
 public:
-  /// Makes history/<name>.csv; frames come with write_frame().
-  DemOutput(Engine<dim>& engine, const std::filesystem::path& run_folder, const std::string& name);
+  /// Makes history/<name>.csv, <name>_cracks.csv and <name>_<probe>.csv; frames come with
+  /// write_frame().
+  DemOutput(Engine<dim>& engine, const Watch<dim>& watch, const std::filesystem::path& run_folder,
+            const std::string& name);
 
   /// The state x^n, v^(n-1/2), and the forces of x^n, which are computed for it. Forces and
   /// stiffness of contacts are those without weight.
+  /// @throws std::runtime_error when a particle is no longer where a number can say, or outside of
+  ///         the domain
   void write_frame(std::uint64_t step, double time);
 
-  /// Energies of t_n.
-  /// @throws std::runtime_error when a particle is no longer where a number can say
+  /// Energies of t_n, and what the probes read.
+  /// @throws std::runtime_error likewise
   void write_history(std::uint64_t step, double time);
+
+  /// The bonds that broke since the last call.
+  void write_cracks();
 
   double seconds() const noexcept { return seconds_; } // spent here, but for the forces
 
 private:
+  void check(std::uint64_t step, double time) const;
+  const Fragments& fragments();
+
   Engine<dim>& engine_;
   FrameWriter frames_;
   History history_;
+  CrackFile<dim> cracks_;
+  std::vector<ProbeFile<dim>> probes_;
+  std::optional<Box<dim>> domain_;
+  Fragments fragments_;
+  std::size_t cracks_of_fragments_ = 0; // that there were when they were found
   double seconds_ = 0.0;
 };
 

@@ -5,13 +5,13 @@
 #include "dem_core/engine.hpp"
 #include "dem_core/program/dem_output.hpp"
 #include "dem_core/program/read_settings.hpp"
+#include "dem_core/spatial_order.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -22,23 +22,26 @@ namespace {
 using coupler::SettingsError;
 using nlohmann::json;
 
-/// Measures the two calls in which an engine works, and watches the critical step, which falls as
-/// contacts form.
-template <int dim> class TimedEngine {
+/// Measures the two calls in which an engine works, has the cracks written as they happen, and
+/// watches the critical step, which falls as contacts form.
+template <int dim> class RecordedEngine {
 public:
   /// @param time_step  that must stay below the critical one, s; nothing: no matter
-  TimedEngine(Engine<dim>& engine, std::optional<double> time_step)
-      : engine_(engine), time_step_(time_step) {}
+  RecordedEngine(Engine<dim>& engine, DemOutput<dim>& output, std::optional<double> time_step)
+      : engine_(engine), output_(output), time_step_(time_step) {}
 
   void motion(std::span<const std::uint32_t> points, std::span<double> position,
               std::span<double> velocity) const {
     engine_.motion(points, position, velocity);
   }
   void compute_own_forces() {
-    const Stopwatch stopwatch(force_seconds);
-    engine_.compute_own_forces();
-    if (time_step_ && (step_++ % steps_between_checks == 0 || engine_.renewals() != renewals_))
-      check_step();
+    {
+      const Stopwatch stopwatch(force_seconds);
+      engine_.compute_own_forces();
+      if (time_step_ && (step_++ % steps_between_checks == 0 || engine_.renewals() != renewals_))
+        check_step();
+    }
+    output_.write_cracks();
   }
   void own_forces(std::span<const std::uint32_t> points, std::span<double> force) const {
     engine_.own_forces(points, force);
@@ -69,13 +72,15 @@ private:
   }
 
   Engine<dim>& engine_;
+  DemOutput<dim>& output_;
   std::optional<double> time_step_;
   std::uint64_t step_ = 0;
   std::size_t renewals_ = 0;
 };
 
 template <int dim> Engine<dim> make_engine(const json& table, const json& case_table) {
-  const Settings<dim> settings = read_settings<dim>(table, case_table);
+  Settings<dim> settings = read_settings<dim>(table, case_table);
+  put_in_spatial_order(settings);
   try {
     return Engine<dim>(settings);
   } catch (const std::invalid_argument& error) {
@@ -86,9 +91,8 @@ template <int dim> Engine<dim> make_engine(const json& table, const json& case_t
 template <int dim> coupler::Declaration declare(const Engine<dim>& engine) {
   coupler::Declaration d;
   d.dimension = dim;
-  d.ids.resize(engine.size());
-  std::iota(d.ids.begin(), d.ids.end(), 0);
   const Particles<dim>& p = engine.particles();
+  d.ids.assign(p.ids.begin(), p.ids.end());
   for (const Vec<dim>& x : p.reference)
     d.positions.insert(d.positions.end(), x.begin(), x.end());
   d.stiffness = engine.stiffness();
@@ -115,6 +119,7 @@ template <int dim> coupler::Limits limits_of(const Engine<dim>& engine, const co
 
 template <int dim>
 int run(coupler::Participant& broker, const json& table, const json& case_table) {
+  const Watch<dim> watch = read_watch<dim>(table);
   Engine<dim> engine = make_engine<dim>(table, case_table);
   const coupler::Plan& plan = broker.declare(declare(engine));
   engine.set_weights(plan.weights);
@@ -126,15 +131,15 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
     return 0;
   }
   engine.start(schedule.time_step);
-  DemOutput<dim> output(engine, assignment.run_folder, assignment.name);
-  TimedEngine<dim> timed(engine, case_table.value("allow_unstable", false)
-                                     ? std::nullopt
-                                     : std::optional(schedule.time_step));
-  coupler::run_engine(timed, broker, plan, schedule, output);
+  DemOutput<dim> output(engine, watch, assignment.run_folder, assignment.name);
+  RecordedEngine<dim> recorded(
+      engine, output,
+      case_table.value("allow_unstable", false) ? std::nullopt : std::optional(schedule.time_step));
+  coupler::run_engine(recorded, broker, plan, schedule, output);
 
   const json summary = {{"seconds",
-                         {{"forces", timed.force_seconds},
-                          {"integrate", timed.integrate_seconds},
+                         {{"forces", recorded.force_seconds},
+                          {"integrate", recorded.integrate_seconds},
                           {"output", output.seconds()}}},
                         {"threads", omp_get_max_threads()},
                         {"particles", engine.size()},

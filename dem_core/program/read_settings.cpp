@@ -285,6 +285,17 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
   return s;
 }
 
+template <int dim> Watch<dim> read_watch(const nlohmann::json& table) {
+  const Node node(table, "");
+  Watch<dim> watch;
+  const Node probes = node["probes"];
+  for (std::size_t k = 0; k < probes.size(); ++k)
+    watch.probes.push_back({probes[k]["name"].text(), probes[k]["box"].box<dim>()});
+  if (!node["domain"].is_null())
+    watch.domain = node["domain"].box<dim>();
+  return watch;
+}
+
 std::optional<int> read_threads(const nlohmann::json& table) {
   const Node node = Node(table, "")["threads"];
   const auto found = table.find("threads");
@@ -297,5 +308,7 @@ std::optional<int> read_threads(const nlohmann::json& table) {
 
 template Settings<2> read_settings<2>(const nlohmann::json&, const nlohmann::json&);
 template Settings<3> read_settings<3>(const nlohmann::json&, const nlohmann::json&);
+template Watch<2> read_watch<2>(const nlohmann::json&);
+template Watch<3> read_watch<3>(const nlohmann::json&);
 
 } // namespace kerf::dem

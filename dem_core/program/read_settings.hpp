@@ -1,6 +1,7 @@
 // From the tables of the case, as JSON, to the settings of the engine.
 #pragma once
 
+#include "dem_core/program/watch.hpp"
 #include "dem_core/settings.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,6 +16,9 @@ namespace kerf::dem {
 /// @throws coupler::SettingsError with the key inside the participant's table
 template <int dim>
 Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& case_table);
+
+/// Probes and domain of the participant's table.
+template <int dim> Watch<dim> read_watch(const nlohmann::json& table);
 
 /// Threads that the case asks for; nothing for "auto".
 std::optional<int> read_threads(const nlohmann::json& table);

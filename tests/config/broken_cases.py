@@ -56,6 +56,22 @@ class BrokenCases(KerfTest):
                      "time step"):
             self.assertIn(part, result.stdout)
 
+    def test_a_probe_cannot_have_the_file_of_the_cracks(self):
+        line = "tangential_stiffness = 2e9 }\n"
+        self.assert_refused(line, line + 'probes = [{ name = "cracks", '
+                            "box = [[0.0, 0.0], [1.0, 1.0]] }]\n", 10,
+                            'two time series of participants.rock are named "cracks"')
+
+    def test_a_probe_cannot_have_the_file_of_a_coupling(self):
+        line = "tangential_stiffness = 2e9 }\n"
+        case = self.write_case(GOOD.replace(line, line + 'probes = [{ name = "joint", '
+                                            "box = [[0.0, 0.0], [1.0, 1.0]] }]\n")
+                               .replace('[[couplings]]\nname = "joint"',
+                                        '[[couplings]]\nname = "rock_joint"'))
+        result = self.kerf("check", case)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('would have the same file as "rock_joint"', result.stderr)
+
     def test_a_missing_key_is_named_with_its_table(self):
         self.assert_refused("end_time = 1e-6\n", "", 1, "case.end_time", "missing")
 

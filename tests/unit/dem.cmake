@@ -2,10 +2,12 @@
 add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_boundary.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_contact.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_cracks.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_damping.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_engine.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_lattice.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_neighbours.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_order.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_packing.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_tool.cpp
@@ -15,7 +17,8 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_stress.cpp)
 target_link_libraries(dem_tests PRIVATE kerf::dem kerf::dem_participant kerf::warnings fmt::fmt
                                         OpenMP::OpenMP_CXX GTest::gtest_main)
 # Threads that spin between two tiny loops cost more than the loops.

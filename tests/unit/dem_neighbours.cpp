@@ -46,6 +46,18 @@ TEST(Neighbours, in_cells_are_those_of_comparing_all_with_all_in_3D) {
   cells_find_what_comparing_all_finds<3>();
 }
 
+TEST(Neighbours, of_very_different_sizes_are_those_of_comparing_all_with_all) {
+  std::mt19937 random(5);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967295.0; };
+  std::vector<Vec<3>> x(500);
+  std::vector<double> r(500);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = {uniform(), uniform(), uniform()};
+    r[i] = i < 3 ? 0.3 : i < 50 ? 0.03 : 0.003;
+  }
+  EXPECT_EQ(dem::find_pairs<3>(x, r, 0.01, {}), all_pairs<3>(x, r, 0.01, {}));
+}
+
 TEST(Neighbours, are_found_although_a_particle_is_lost_in_space) {
   const std::vector<Vec<2>> x = {{0.0, 0.0}, {1e300, 0.0}, {std::nan(""), 0.0}, {1.0, 0.0}};
   const std::vector<double> r(4, 0.6);

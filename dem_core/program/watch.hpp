@@ -1,0 +1,16 @@
+// What a case asks to watch, beside the particles themselves.
+#pragma once
+
+#include "dem_core/probe.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace kerf::dem {
+
+template <int dim> struct Watch {
+  std::vector<Probe<dim>> probes;
+  std::optional<Box<dim>> domain; // that no particle may leave
+};
+
+} // namespace kerf::dem

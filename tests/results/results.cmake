@@ -1,0 +1,3 @@
+# Whole runs whose files are read as a user would.
+kerf_python_test(results.rock results/rock.py Rock results)
+kerf_python_test(results.lost_particles results/rock.py LostParticles results)
