@@ -15,7 +15,7 @@ namespace kerf::dem {
 struct Energies {
   double kinetic = 0.0;              // 1/2 v^(n-1/2) . M v^(n+1/2), rotations too
   double elastic = 0.0;              // sum of w_c (F_n² / k_n + |F_T|² / k_t) / 2
-  double external_work = 0.0;        // of the reactions to prescribed motion
+  double external_work = 0.0;        // of reactions to prescribed motion, tools, weight
   double interface_work = 0.0;       // of the interface forces
   double damping_dissipation = 0.0;  //
   double friction_dissipation = 0.0; // slip of contacts without bond

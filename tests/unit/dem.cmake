@@ -8,11 +8,13 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_neighbours.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_tool.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_wall_contacts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_critical_step.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_walls.cpp)
 target_link_libraries(dem_tests PRIVATE kerf::dem kerf::dem_participant kerf::warnings fmt::fmt
                                         OpenMP::OpenMP_CXX GTest::gtest_main)
 # Threads that spin between two tiny loops cost more than the loops.
