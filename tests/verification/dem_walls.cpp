@@ -1,6 +1,5 @@
 // Particles on walls and tools, against closed forms: sliding, rolling, bouncing, pressing.
 #include "tests/cases/dem_models.hpp"
-#include "tests/cases/surfaces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -140,8 +139,7 @@ TEST(Walls, a_sphere_rolls_on_an_incline_up_to_seven_halves_of_the_friction_and_
     if (share < 1.0)
       EXPECT_NEAR(slip, 0.0, 10.0 * swing(engine));
     else
-      EXPECT_NEAR(slip, time * (sliding - 2.5 * mu * g * std::cos(angle) + 0.0) + 0.0,
-                  10.0 * swing(engine));
+      EXPECT_NEAR(slip, time * (sliding - 2.5 * mu * g * std::cos(angle)), 10.0 * swing(engine));
   }
 }
 
@@ -208,7 +206,7 @@ template <int dim> double energy_error(double share, bool slides) {
               "off by %.1e of the work\n",
               dim, share, e.external_work, e.elastic, e.friction_dissipation,
               worst / e.external_work);
-  EXPECT_EQ(e.friction_dissipation > 0.0, slides);
+  EXPECT_EQ(e.friction_dissipation > 1e-2 * e.external_work, slides);
   return worst / e.external_work;
 }
 
@@ -282,7 +280,6 @@ TEST(Walls, the_critical_step_is_that_of_a_disc_that_touches_a_wall) {
   for (const double share : {0.99, 1.01}) {
     dem::Engine<2> one(settings);
     EXPECT_NEAR(one.step_limit().omega2, k_wall / mass, 1e-9 * k_wall / mass);
-    settings.positions[0][1] *= 1.0; // at rest on the floor
     one.start(share * 2.0 / std::sqrt(one.step_limit().omega2));
     double highest = 0.0;
     for (int n = 0; n < 3000; ++n) {
@@ -317,7 +314,8 @@ TEST(Walls, the_critical_step_counts_a_tool_that_is_still_to_come) {
 }
 
 // Reference: a weight on a spring: potential energy is counted as work of the weight. The system is
-// linear while the particle stays on the floor: the books close to rounding.
+// linear while the particle stays on the floor: the books close to rounding, 1e-19 m of a radius of
+// 1 mm over an overlap of 8e-8 m.
 TEST(Walls, the_work_of_the_weight_is_found_in_the_energies) {
   auto settings = on_plane<2>(0.0);
   settings.positions[0][1] -= 1e-9;
@@ -328,7 +326,7 @@ TEST(Walls, the_work_of_the_weight_is_found_in_the_energies) {
     cases::step(engine);
     const auto e = engine.energies();
     start = n == 0 ? balance(e) : start;
-    EXPECT_NEAR(balance(e), start, 1e-12 * e.elastic);
+    EXPECT_NEAR(balance(e), start, 1e-11 * e.elastic);
   }
 }
 
