@@ -42,9 +42,10 @@ private:
                       "give the name of a solver, or the command line of your own.");
       participant["solver"] = nullptr;
     }
-    if (participant["kind"] == "dem")
+    if (participant["kind"] == "dem") {
       check_particles(key + ".particles", participant["particles"]);
-    else
+      check_tools(key, participant["tools"]);
+    } else
       check_elastic(key + ".material", participant["material"]);
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
@@ -80,6 +81,50 @@ private:
                       "give 1 for the other axes, for example [80, 1].");
         break;
       }
+  }
+
+  void check_tools(const string& participant, const json& tools) {
+    std::set<string> names;
+    for (std::size_t k = 0; k < tools.size(); ++k) {
+      const string key = fmt::format("{}.tools[{}]", participant, k);
+      check_name(key, tools[k]["name"], "tools", names);
+      check_keys_of(key, tools[k], "shape", tools[k]["shape"],
+                    {{"plane", {"point", "normal"}}, {"file", {"file"}}, {"box", {"box"}}});
+      check_one_of(key, tools[k], "velocity", "velocities");
+      check_rotation(key, tools[k]);
+      if (const json& servo = tools[k]["servo"]; !servo.is_null()) {
+        check_one_of(key + ".servo", servo, "force", "forces");
+        if (servo["force"].is_null() && servo["forces"].is_null())
+          problems_.add(key + ".servo", key + ".servo has neither force nor forces.",
+                        "give the force that is wanted, or a table of forces.");
+      }
+      if (const json& free = tools[k]["free"]; !free.is_null())
+        check_components(key + ".free.axes", free["axes"]);
+    }
+  }
+
+  void check_rotation(const string& key, const json& tool) {
+    const json& rotation = tool["rotation"];
+    const bool has_axis = !rotation.is_null() && !rotation["axis"].is_null();
+    if (!rotation.is_null())
+      check_one_of(key + ".rotation", rotation, "rate", "rates");
+    if (is_plane_ && has_axis)
+      problems_.add(key + ".rotation.axis",
+                    key + ".rotation.axis is given, but in 2D a tool turns in the plane.",
+                    "leave it out; a positive rate turns x towards y.");
+    const bool turns = !rotation.is_null() || !tool["free_rotation"].is_null();
+    if (!is_plane_ && turns && !has_axis)
+      problems_.add(key + ".rotation.axis", key + ".rotation.axis is missing.",
+                    "give the direction of the axis, for example [0.0, 0.0, 1.0].");
+  }
+
+  /// Two ways to give one quantity.
+  void check_one_of(const string& key, const json& table, const string& first,
+                    const string& second) {
+    if (!table[first].is_null() && !table[second].is_null())
+      problems_.add(
+          key + "." + second, fmt::format("{} has both {} and {}.", key, first, second),
+          fmt::format("give {} for one value, or {} for a table of times.", first, second));
   }
 
   void check_elastic(const string& key, const json& material) {

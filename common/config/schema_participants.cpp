@@ -169,7 +169,7 @@ std::vector<Key> joined(std::vector<std::vector<Key>> parts) {
 } // namespace
 
 std::vector<Key> particle_keys() {
-  return joined({participant_keys("dem"), model_of_particles(), motion_keys("dem")});
+  return joined({participant_keys("dem"), model_of_particles(), tool_keys(), motion_keys("dem")});
 }
 
 std::vector<Key> mesh_keys() {

@@ -48,7 +48,8 @@ template <int dim>
 DemOutput<dim>::DemOutput(Engine<dim>& engine, const std::filesystem::path& run_folder,
                           const std::string& name)
     : engine_(engine), frames_(run_folder, name, dim),
-      history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()) {}
+      history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()),
+      tools_(engine, run_folder, name) {}
 
 template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double time) {
   engine_.compute_own_forces();
@@ -111,7 +112,8 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
       {"normal_stiffness", 1, std::span<const double>(normal_stiffness)},
       {"tangential_stiffness", 1, std::span<const double>(tangential_stiffness)},
       {"weight", 1, std::span<const double>(contact_weight)}};
-  const Grid grids[] = {std::move(particles), std::move(contacts)};
+  std::vector<Grid> grids = {std::move(particles), std::move(contacts)};
+  tools_.add_grids(grids);
   frames_.write(step, time, grids);
 }
 
@@ -137,6 +139,7 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
   const Vec<dim> momentum = engine_.momentum();
   row.insert(row.end(), momentum.begin(), momentum.end());
   history_.append(row);
+  tools_.write_history(step, time);
 }
 
 template class DemOutput<2>;

@@ -1,9 +1,10 @@
-// What kerf-dem writes into the run folder: frames of particles and contacts, and a history.
+// What kerf-dem writes into the run folder: frames of particles, contacts and tools, and histories.
 #pragma once
 
 #include "common/history.hpp"
 #include "common/results.hpp"
 #include "dem_core/engine.hpp"
+#include "dem_core/program/tool_output.hpp"
 
 #include <filesystem>
 #include <string>
@@ -29,6 +30,7 @@ private:
   Engine<dim>& engine_;
   FrameWriter frames_;
   History history_;
+  ToolOutput<dim> tools_;
   double seconds_ = 0.0;
 };
 
