@@ -18,7 +18,7 @@ TimeTable read_table(const Node& rows, std::size_t column) {
   try {
     return TimeTable(std::move(times), std::move(values));
   } catch (const std::invalid_argument& error) {
-    rows.fail(error.what());
+    rows.fail(error.what(), "give rows of a time and its values, the times ascending");
   }
 }
 
@@ -52,7 +52,7 @@ template <int dim> Surface<dim> read_scaled_surface(const Node& tool) {
       vertex *= tool["scale"].is_null() ? 1.0 : tool["scale"].positive();
     return surface;
   } catch (const FileError& error) {
-    (tag.is_null() ? file : tag).fail(error.what());
+    (tag.is_null() ? file : tag).fail(error.what(), "correct the file, or name another surface");
   }
 }
 
@@ -66,7 +66,9 @@ template <int dim> ToolShape<dim> read_shape(const Node& tool) {
     if (shape == "file")
       return ToolShape<dim>(read_scaled_surface<dim>(tool));
   } catch (const std::invalid_argument& error) {
-    tool[shape == "plane" ? "normal" : shape].fail(error.what());
+    tool[shape == "plane" ? "normal" : shape].fail(
+        error.what(), shape == "plane" ? "give the direction from the solid to the particles"
+                                       : "let the surface extend along every axis");
   }
   tool["shape"].fail(fmt::format("\"{}\" must be one of box, file, plane", shape));
 }
@@ -114,7 +116,7 @@ template <int dim> ToolMotion<dim> read_motion(const Node& tool, const ToolShape
   try {
     ToolMover<dim>{motion};
   } catch (const std::invalid_argument& error) {
-    tool.fail(error.what());
+    tool.fail(error.what(), "let each direction have one motion, and give directions a length");
   }
   return motion;
 }

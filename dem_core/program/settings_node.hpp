@@ -24,6 +24,9 @@ public:
   [[noreturn]] void fail(const std::string& sentence) const {
     throw coupler::SettingsError(key_, sentence);
   }
+  [[noreturn]] void fail(const std::string& sentence, std::string_view fix) const {
+    fail(fmt::format("{}\n{}", sentence, fix));
+  }
 
   /// A member; null when it is missing.
   Node operator[](std::string_view name) const {

@@ -19,3 +19,5 @@ target_link_libraries(dem_tests PRIVATE kerf::dem kerf::dem_participant kerf::wa
                                         OpenMP::OpenMP_CXX GTest::gtest_main)
 # Threads that spin between two tiny loops cost more than the loops.
 gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
+
+kerf_python_test(case.tools verification/tools.py Tools)

@@ -1,9 +1,13 @@
 // Contacts of particles with tools: where they are, what they carry along, what they add up to.
+#include "common/results.hpp"
+#include "dem_core/program/tool_output.hpp"
 #include "tests/cases/dem_models.hpp"
 #include "tests/cases/surfaces.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
+
+#include <filesystem>
 
 namespace kerf {
 namespace {
@@ -273,6 +277,31 @@ TEST(WallContacts, refuse_constants_that_cannot_be) {
             "tool plane: tangential_stiffness must not be negative, not -1");
   EXPECT_EQ(sentence({1.0, 1.0, -0.5, false}),
             "tool plane: friction must not be negative, not -0.5");
+}
+
+// The surface of a turned and moved tool, read back from a frame.
+TEST(ToolOutput, shows_the_surface_where_the_tool_is) {
+  const auto folder = std::filesystem::temp_directory_path() / "kerf_tool_output";
+  dem::Engine<3> engine(milled_body(3));
+  engine.start(1e-6);
+  dem::ToolOutput<3> output(engine, folder, "rock");
+  for (int n = 0; n < 20; ++n)
+    cases::step(engine);
+  engine.compute_own_forces();
+  std::vector<Grid> grids;
+  output.add_grids(grids);
+  ASSERT_EQ(grids.size(), 1u); // a plane has no end
+  FrameWriter(folder, "rock", 3).write(0, 0.0, grids);
+  const Frame frame = read_frame(folder / "frames" / "rock_000000000.h5");
+  const auto& position = frame.arrays.at("tool_mill/position").reals();
+  const auto& tool = engine.tools()[1];
+  ASSERT_EQ(position.size(), 24u);
+  for (std::size_t k = 0; k < 8; ++k)
+    EXPECT_EQ((Vec<3>(&position[3 * k])),
+              tool.pose().to_space(tool.shape().surface()->vertices[k]));
+  EXPECT_EQ(frame.arrays.at("tool_mill/cells").columns, 3u);
+  EXPECT_NEAR(tool.angle(), 1e3 * 20e-6, 1e-15);
+  std::filesystem::remove_all(folder);
 }
 
 } // namespace
