@@ -88,6 +88,7 @@ private:
     for (std::size_t k = 0; k < tools.size(); ++k) {
       const string key = fmt::format("{}.tools[{}]", participant, k);
       check_name(key, tools[k]["name"], "tools", names);
+      check_history(key, participant, tools[k]["name"]);
       check_keys_of(key, tools[k], "shape", tools[k]["shape"],
                     {{"plane", {"point", "normal"}}, {"file", {"file"}}, {"box", {"box"}}});
       check_one_of(key, tools[k], "velocity", "velocities");
@@ -101,6 +102,16 @@ private:
       if (const json& free = tools[k]["free"]; !free.is_null())
         check_components(key + ".free.axes", free["axes"]);
     }
+  }
+
+  /// The history of a tool has the names of its participant and its own.
+  void check_history(const string& key, const string& participant, const string& tool) {
+    const string name = participant.substr(participant.rfind('.') + 1) + "_" + tool;
+    for (const auto& others : {participants_, couplings_})
+      if (std::find(others.begin(), others.end(), name) != others.end())
+        problems_.add(key + ".name",
+                      fmt::format("history/{0}.csv would be of {1}.name and of {0}.", name, key),
+                      "give one of them another name.");
   }
 
   void check_rotation(const string& key, const json& tool) {

@@ -170,6 +170,28 @@ TEST(Walls, a_sphere_bounces_off_a_plane_with_all_of_its_energy) {
   }
 }
 
+// Reference: elastic impact of a plate of mass M on a disc of mass m at rest: the disc leaves with
+// 2 M / (m + M) of the velocity. Tolerance as above; momentum to rounding.
+TEST(Walls, a_free_plate_shares_its_momentum_with_the_disc_that_it_hits) {
+  auto settings = on_plane<2>(0.0);
+  settings.gravity.setZero();
+  settings.positions[0][1] = 1.1 * radius;
+  const double plate = 3e-3, share = 0.05; // kg
+  settings.tools[0].motion.velocity[1] = 1.0;
+  settings.tools[0].motion.free_translation =
+      dem::FreeTranslation<2>{{false, true}, plate, {0.0, 0.0}};
+  dem::Engine<2> engine(settings);
+  const double mass = engine.particles().mass[0];
+  engine.start(share / std::sqrt(k_wall * (1.0 / mass + 1.0 / plate)));
+  for (int n = 0; n < 10'000; ++n)
+    cases::step(engine);
+  const double v = engine.particles().velocity[0][1];
+  const double v_plate = engine.tools()[0].velocity().translation[1];
+  std::printf("impact: disc %.6f m/s, plate %.6f m/s\n", v, v_plate);
+  EXPECT_NEAR(v, 2.0 * plate / (mass + plate), 0.5 * share * share);
+  EXPECT_NEAR(mass * v + plate * v_plate, plate, 1e-13 * plate);
+}
+
 /// A bonded body between a floor and a box that presses, turns and moves on.
 template <int dim> double energy_error(double share, bool slides) {
   auto settings = cases::irregular_model<dim>(5, rock(dim, 0.5), 5);

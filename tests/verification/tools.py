@@ -107,6 +107,10 @@ class Tools(KerfTest):
         self.assert_refused('normal = [0.0, 1.0]', "normal = [0.0, 0.0]", "normal = [0.0, 0.0]",
                             tools + "[0].normal", "not zero")
         self.assert_refused('file = "blade.txt"', 'file = "knife.txt"', "knife.txt", "knife.txt")
+        self.assert_refused("[participants.rock]", "[participants.rock_floor]\nkind = \"dem\"\n"
+                            "particles.file = \"blade.txt\"\nmaterial = { density = 1.0, normal_stiffness = 1.0,"
+                            " tangential_stiffness = 1.0 }\n[participants.rock]", 'name = "floor"',
+                            "history/rock_floor.csv would be of")
         self.assert_refused("max_velocity = 0.05 }", 
                             'max_velocity = 0.05 }\nfree = { axes = ["y"], mass = 1.0 }',
                             '[[participants.rock.tools]]\nname = "blade"', tools + "[1]", "cannot be free along it")
