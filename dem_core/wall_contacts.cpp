@@ -73,10 +73,6 @@ template <int dim> struct WallContacts<dim>::Approach {
     else
       return turned.dot(direction);
   }
-  /// Arm to a contact of the last step.
-  Vec<dim> arm_before(const FacetContact<dim>& place) const {
-    return place.point - (centre - moved);
-  }
 };
 
 template <int dim>
@@ -118,6 +114,31 @@ Vec<dim> WallContacts<dim>::image(const Tool<dim>& tool, const Vec<dim>& positio
   return position + (period_.shortest(from_middle) - from_middle);
 }
 
+/// Lists the facets near the image, and near those that may take its place before the next list.
+template <int dim>
+void WallContacts<dim>::find_near(const Tool<dim>& tool, const Vec<dim>& position, double radius,
+                                  std::vector<std::uint32_t>& found) const {
+  const auto near = [&](const Vec<dim>& x, std::vector<std::uint32_t>& list) {
+    tool.shape().near(tool.pose().to_body(x), radius + skin_, list);
+  };
+  std::vector<Vec<dim>> images = {image(tool, position)};
+  const Vec<dim> from_middle = images.front() - tool.pose().to_space(middle_);
+  for (int a = 0; a < dim; ++a)
+    if (period_.length[a] > 0.0 && std::abs(from_middle[a]) > 0.5 * period_.length[a] - skin_)
+      for (std::size_t count = images.size(), k = 0; k < count; ++k) {
+        const double shift = std::copysign(period_.length[a], from_middle[a]);
+        images.push_back(images[k] - shift * Vec<dim>::Unit(a));
+      }
+  near(images.front(), found);
+  std::vector<std::uint32_t> more;
+  for (std::size_t k = 1; k < images.size(); ++k) {
+    near(images[k], more);
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+}
+
 template <int dim>
 void WallContacts<dim>::renew(const Tool<dim>& tool, const Particles<dim>& particles) {
   const auto blocks = static_cast<std::int64_t>(blocks_.size());
@@ -137,7 +158,7 @@ void WallContacts<dim>::renew(const Tool<dim>& tool, const Particles<dim>& parti
       found.clear();
       if (centre.allFinite()) {
         farthest = std::max(farthest, (centre - tool.pose().start).norm());
-        tool.shape().near(centre, particles.radius[i] + skin_, found);
+        find_near(tool, particles.position(i), particles.radius[i], found);
       }
       bool has_history = false;
       for (; touching != block.now.contacts.end() && touching->particle == i; ++touching)
@@ -261,16 +282,16 @@ void WallContacts<dim>::follow(WallContact<dim>& contact, const FacetContact<dim
   const Vec<dim>& n = now.normal;
   const Vec<dim> n_before = before ? before->normal : n;
   const Vec<dim> n_middle = (n_before + n).normalized();
-  Vec<dim> arm = now.point - approach.centre;
-  if (before)
-    arm = 0.5 * (arm + approach.arm_before(*before));
-  const Vec<dim> growth = k_t * approach.slip(n_middle, arm);
+  const Vec<dim> arm = now.point - approach.centre;
+  const Vec<dim> arm_middle = before ? Vec<dim>(0.5 * (arm + contact.arm)) : arm;
+  const Vec<dim> growth = k_t * approach.slip(n_middle, arm_middle);
   const double half_spin = 0.25 * approach.spin_about(n_middle);
 
   Vec<dim> trial = carried<dim>(contact.shear_force, n_before, n_middle);
   trial = spun<dim>(trial, n_middle, half_spin) + growth;
   trial = carried<dim>(spun<dim>(trial, n_middle, half_spin), n_middle, n);
 
+  contact.arm = arm;
   contact.normal_force = std::min(0.0, k_n * (now.gap - contact.rest_gap));
   contact.shear_force = trial;
   const double limit = material_.friction * std::abs(contact.normal_force);
@@ -290,7 +311,7 @@ void WallContacts<dim>::end(const WallContact<dim>& contact, const FacetContact<
   const double k_t = material_.tangential_stiffness;
   if (contact.shear_force.isZero(0.0))
     return;
-  const Vec<dim> growth = k_t * approach.slip(before.normal, approach.arm_before(before));
+  const Vec<dim> growth = k_t * approach.slip(before.normal, contact.arm);
   loss += 0.5 * contact.shear_force.dot(contact.shear_force + growth) / k_t;
 }
 

@@ -14,6 +14,7 @@ namespace kerf::dem {
 template <int dim> struct WallContact {
   std::uint32_t particle = 0;
   double rest_gap = 0.0;                   // without normal force, below zero when seated, m
+  Vec<dim> arm = Vec<dim>::Zero();         // from the centre to the surface, m
   double normal_force = 0.0;               // F_n, N
   Vec<dim> shear_force = Vec<dim>::Zero(); // F_T on the particle, N
 };
@@ -81,6 +82,8 @@ private:
 
   void renew(const Tool<dim>& tool, const Particles<dim>& particles);
   Vec<dim> image(const Tool<dim>& tool, const Vec<dim>& position) const;
+  void find_near(const Tool<dim>& tool, const Vec<dim>& position, double radius,
+                 std::vector<std::uint32_t>& found) const;
   ToolLoad<dim> compute_block(Block& block, const Step& step, Loads<dim>& loads) const;
   void touch(Block& block, const ToolShape<dim>& shape, const Approach& approach, std::size_t first,
              std::size_t last) const;

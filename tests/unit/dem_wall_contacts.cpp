@@ -230,6 +230,40 @@ TEST(WallContacts, touch_the_image_that_is_nearest_to_the_tool) {
   EXPECT_NEAR(engine.tools()[0].load().force[0], -1e7 * 0.1e-3, 1e-6);
 }
 
+// A disc goes around in a period that a floor of one segment, or a plane, spans. The floor carries
+// it on both sides of the seam; the friction on a plane does not even notice it.
+TEST(WallContacts, go_on_across_the_seam_of_a_period) {
+  auto settings = one_particle<2>({0.4999, 0.9e-3});
+  settings.period.length = {1.0, 0.0};
+  settings.initial.resize(1);
+  settings.initial[0].velocity = {1.0, 0.0};
+  settings.boundary = {
+      cases::prescribe_at<2>(settings.positions[0], dem::Motion::velocity, {1.0, 0.0})};
+  settings.boundary[0].components = 2u; // stays at its height
+  settings.boundary[0].velocity.setZero();
+  const Surface<2> floor{{{-0.5, 0.0}, {0.5, 0.0}}, {{1, 0}}};
+  for (const bool is_plane : {true, false}) {
+    settings.tools = {plane<2>({0.0, 0.0}, {0.0, 1.0})};
+    if (!is_plane)
+      settings.tools[0].shape = ToolShape<2>(floor);
+    settings.tools[0].material.friction = 1e3; // rolls
+    dem::Engine<2> engine(settings);
+    engine.start(1e-7);
+    double largest = 0.0;
+    for (int n = 0; n < 4000; ++n) {
+      cases::step(engine);
+      EXPECT_EQ(engine.wall_contacts()[0].size(), 1u);
+      EXPECT_NEAR(engine.tools()[0].load().force[1], -1e7 * 0.1e-3, 1e-6);
+      if (n > 10)
+        largest = std::max(largest, std::abs(engine.tools()[0].load().force[0]));
+    }
+    EXPECT_GT(engine.particles().displacement[0][0], 1e-4);
+    // The spring swings with sqrt(k_t / (3 m)) v of the start; a jump of an arm would be 1e3 times
+    // it.
+    EXPECT_LT(largest, 1.1 * std::sqrt(5e6 * engine.particles().mass[0] / 3.0));
+  }
+}
+
 // A sphere rolls and slides over 2 x 16² triangles, and over a plane. Both give the same but for
 // the rounding of the feet of the normals.
 TEST(WallContacts, with_a_flat_sheet_of_triangles_are_those_with_a_plane) {
