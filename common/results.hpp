@@ -18,7 +18,8 @@ enum class Cells {
   points,   // nothing: one cell for every point, no connectivity
   segments, // 2 points
   quads,    // 4 points, VTK's order
-  hexes     // 8 points, VTK's order
+  hexes,    // 8 points, VTK's order
+  triangles // 3 points
 };
 
 /// One quantity at the points or cells of a grid. The writer does not keep the data.

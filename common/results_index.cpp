@@ -43,6 +43,9 @@ std::string topology(const std::string& file, const Layout& layout) {
   case Cells::hexes:
     kind = R"("Hexahedron")";
     break;
+  case Cells::triangles:
+    kind = R"("Triangle")";
+    break;
   }
   return fmt::format(
       "        <Topology TopologyType={} NumberOfElements=\"{}\">{}</Topology>\n", kind,
@@ -53,7 +56,7 @@ std::string topology(const std::string& file, const Layout& layout) {
 } // namespace
 
 std::size_t points_per_cell(Cells cells) {
-  constexpr std::size_t count[] = {1, 2, 4, 8};
+  constexpr std::size_t count[] = {1, 2, 4, 8, 3};
   return count[static_cast<std::size_t>(cells)];
 }
 

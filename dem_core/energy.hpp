@@ -15,7 +15,7 @@ namespace kerf::dem {
 struct Energies {
   double kinetic = 0.0;              // 1/2 v^(n-1/2) . M v^(n+1/2), rotations too
   double elastic = 0.0;              // of the springs of the contacts, with weight
-  double external_work = 0.0;        // of the reactions to prescribed motion
+  double external_work = 0.0;        // of reactions to prescribed motion, tools, weight
   double interface_work = 0.0;       // of the interface forces
   double damping_dissipation = 0.0;  // of damping, and of dashpots to first order in dt
   double friction_dissipation = 0.0; // slip of contacts without bond

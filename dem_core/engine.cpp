@@ -4,6 +4,7 @@
 #include "dem_core/balance.hpp"
 #include "dem_core/contact_constants.hpp"
 #include "dem_core/damping.hpp"
+#include "dem_core/gravity.hpp"
 #include "dem_core/initial.hpp"
 #include "dem_core/integrate.hpp"
 #include "dem_core/probe.hpp"
@@ -37,17 +38,31 @@ Engine<dim>::Engine(const Settings<dim>& settings)
       period_(settings.period),
       particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
                                      settings.ids)),
-      boundary_(settings.boundary, particles_.reference),
+      boundary_(settings.boundary, particles_.reference), gravity_(settings.gravity),
       start_rotation_(particles_.size(), Rot<dim>::Zero()) {
   check(material_);
+  if (!gravity_.allFinite())
+    throw std::invalid_argument("gravity must be finite");
   const double width = skin_width(particles_.radius);
   contacts_ = make_contacts(particles_, material_,
                             settings.bonds ? std::optional(settings.gap_tolerance) : std::nullopt,
                             width, period_);
   skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
   bonds_at_start_ = contacts_.bonds();
+  add_tools(settings);
   start_rotation_ = apply_initial_displacements<dim>(initial_, particles_);
   loads_.own.resize(size() + contacts_.waiting_rows());
+}
+
+template <int dim> void Engine<dim>::add_tools(const Settings<dim>& settings) {
+  for (const ToolSettings<dim>& tool : settings.tools)
+    try {
+      tool_names_.push_back(tool.name);
+      tools_.emplace_back(tool.shape, tool.motion);
+      wall_contacts_.emplace_back(tool.material, tools_.back(), particles_, skin_.width(), period_);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("tool {}: {}", tool.name, error.what()));
+    }
 }
 
 template <int dim> std::vector<double> Engine<dim>::stiffness() const {
@@ -78,13 +93,19 @@ template <int dim> void Engine<dim>::set_weights(std::span<const double> weight)
     blend(contacts_, particles_);
 }
 
-template <int dim> StepLimit Engine<dim>::step_limit() const {
-  std::vector<double> sums(size());
+/// Of every particle, rad²/s².
+template <int dim> std::vector<double> Engine<dim>::row_sums() const {
+  std::vector<double> sums = wall_sums<dim>(tools_, wall_contacts_, particles_, boundary_);
   const Incidence incident = incidence(contacts_, size());
   const auto count = static_cast<std::int64_t>(size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < count; ++i)
-    sums[i] = row_sum(contacts_, incident, particles_, boundary_, i);
+    sums[i] += row_sum(contacts_, incident, particles_, boundary_, i);
+  return sums;
+}
+
+template <int dim> StepLimit Engine<dim>::step_limit() const {
+  const std::vector<double> sums = row_sums();
   const auto largest = std::max_element(sums.begin(), sums.end());
   const auto i = static_cast<std::size_t>(largest - sums.begin());
   return {with_dashpots(*largest, dashpot_time(contacts_, particles_)),
@@ -103,10 +124,10 @@ void Engine<dim>::inverse_mass(std::span<const std::uint32_t> points, std::span<
 template <int dim>
 void Engine<dim>::omega2(std::span<const std::uint32_t> points, std::span<double> out) const {
   assert(out.size() == points.size());
-  const Incidence incident = incidence(contacts_, size());
+  const std::vector<double> sums = row_sums();
   const double time = dashpot_time(contacts_, particles_);
   for (std::size_t k = 0; k < points.size(); ++k)
-    out[k] = with_dashpots(row_sum(contacts_, incident, particles_, boundary_, points[k]), time);
+    out[k] = with_dashpots(sums[points[k]], time);
 }
 
 template <int dim> void Engine<dim>::start(double time_step) {
@@ -115,6 +136,7 @@ template <int dim> void Engine<dim>::start(double time_step) {
   time_step_ = time_step;
   apply_initial_velocities<dim>(initial_, time_step, particles_);
   boundary_.advance(0, time_step);
+  weight_work_at_start_ = weight_work(gravity_, particles_, 0.0);
 }
 
 template <int dim>
@@ -150,6 +172,12 @@ template <int dim> void Engine<dim>::compute_own_forces() {
   for (const Break& lost : breaks)
     cracks_.push_back(
         crack_of(lost, contacts_, particles_, step_, static_cast<double>(step_) * time_step_));
+  for (std::size_t k = 0; k < tools_.size(); ++k) {
+    tools_[k].begin_step(step_, time_step_);
+    wall_contacts_[k].compute(tools_[k], particles_, increment, step_ == 0 ? 0.0 : time_step_,
+                              loads_);
+  }
+  add_weight(gravity_, particles_, loads_);
   add_damping(damping_, particles_, loads_);
   forces_are_current_ = true;
 }
@@ -194,7 +222,12 @@ template <int dim> void Engine<dim>::forget_interface_forces() {
 
 template <int dim> void Engine<dim>::integrate() {
   assert(time_step_ > 0.0 && forces_are_current_);
-  skin_.wear(dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0));
+  const double farthest = dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0);
+  skin_.wear(farthest);
+  for (std::size_t k = 0; k < tools_.size(); ++k) {
+    tools_[k].end_step();
+    wall_contacts_[k].wear(farthest);
+  }
   book_step();
   interface_forces_are_old_ = true;
   ++step_;
@@ -222,6 +255,12 @@ template <int dim> Energies Engine<dim>::energies() const {
     energies.friction_dissipation += block.friction;
     energies.fracture_dissipation += block.fracture;
     energies.damping_dissipation += block.viscous;
+  }
+  energies.external_work += weight_work(gravity_, particles_, time_step_) - weight_work_at_start_;
+  for (std::size_t k = 0; k < tools_.size(); ++k) {
+    energies.elastic += wall_contacts_[k].elastic_energy();
+    energies.external_work += tools_[k].work();
+    energies.friction_dissipation += wall_contacts_[k].friction_loss();
   }
   return energies;
 }

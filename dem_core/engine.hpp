@@ -8,6 +8,8 @@
 #include "dem_core/energy.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
+#include "dem_core/tool.hpp"
+#include "dem_core/wall_contacts.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -42,6 +44,12 @@ public:
   const Contacts<dim>& contacts() const noexcept { return contacts_; }
   const Boundary<dim>& boundary() const noexcept { return boundary_; }
   const Period<dim>& period() const noexcept { return period_; }
+
+  /// Rigid tools and their contacts, in the order of the settings; of t_n after
+  /// compute_own_forces(), velocities and works after integrate().
+  std::span<const Tool<dim>> tools() const noexcept { return tools_; }
+  std::span<const WallContacts<dim>> wall_contacts() const noexcept { return wall_contacts_; }
+  const std::string& tool_name(std::size_t k) const { return tool_names_[k]; }
 
   /// Mean normal stiffness of the bonds of each particle; of the material if it has none, N/m.
   std::vector<double> stiffness() const;
@@ -88,6 +96,8 @@ public:
   std::optional<std::uint32_t> first_outside(const Box<dim>& box) const;
 
 private:
+  void add_tools(const Settings<dim>& settings);
+  std::vector<double> row_sums() const;
   void book_step();
   void forget_interface_forces();
 
@@ -100,6 +110,11 @@ private:
   Boundary<dim> boundary_;
   Contacts<dim> contacts_;
   Skin<dim> skin_;
+  std::vector<std::string> tool_names_;
+  std::vector<Tool<dim>> tools_;
+  std::vector<WallContacts<dim>> wall_contacts_;
+  Vec<dim> gravity_;                     // m/s²
+  double weight_work_at_start_ = 0.0;    // J
   std::vector<Rot<dim>> start_rotation_; // made before the start, rad
   std::size_t bonds_at_start_ = 0;
   std::size_t renewals_ = 0;

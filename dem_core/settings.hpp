@@ -2,10 +2,13 @@
 #pragma once
 
 #include "common/vec.hpp"
+#include "dem_core/tool_motion.hpp"
+#include "dem_core/tool_shape.hpp"
 
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace kerf::dem {
@@ -97,6 +100,22 @@ template <int dim> struct InitialCondition {
   std::optional<Pulse> pulse;
 };
 
+/// Constants of the contacts of particles with a tool; in 2D per metre of thickness.
+struct WallMaterial {
+  double normal_stiffness = 0.0;     // k_n, N/m
+  double tangential_stiffness = 0.0; // k_t, N/m
+  double friction = 0.0;             // mu
+  bool seated = false; // contacts of the start are free of stress, however deep they are
+};
+
+/// A rigid wall or tool.
+template <int dim> struct ToolSettings {
+  std::string name;
+  ToolShape<dim> shape;
+  ToolMotion<dim> motion;
+  WallMaterial material;
+};
+
 template <int dim> struct Settings {
   std::vector<Vec<dim>> positions; // [n] centres in the reference configuration, m
   std::vector<double> radii;       // [n] m
@@ -109,6 +128,8 @@ template <int dim> struct Settings {
   std::vector<Prescription<dim>> boundary;
   std::vector<InitialCondition<dim>> initial;
   Period<dim> period;
+  std::vector<ToolSettings<dim>> tools;
+  Vec<dim> gravity = Vec<dim>::Zero(); // of the particles; a free tool has its own force, m/s²
 };
 
 } // namespace kerf::dem

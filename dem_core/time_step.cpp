@@ -27,6 +27,20 @@ template <int dim> Kinematics<dim> rolling(const Vec<dim>& n, double arm_over_ra
   return k;
 }
 
+/// Largest eigenvalue of a particle that touches a tool, without anything else, rad²/s².
+template <int dim>
+double wall_eigenvalue(const WallMaterial& material, const Particles<dim>& p,
+                       const Boundary<dim>& boundary, std::size_t i) {
+  bool is_held = true;
+  for (int a = 0; a < dim; ++a)
+    is_held = is_held && boundary.prescribes(i, a);
+  const double translation = is_held ? 0.0 : 1.0 / p.mass[i]; // 1/kg
+  const double rotation =
+      boundary.holds_rotation(i) ? 0.0 : p.radius[i] * p.radius[i] / p.inertia[i]; // 1/kg
+  return std::max(material.normal_stiffness * translation,
+                  material.tangential_stiffness * (translation + rotation));
+}
+
 } // namespace
 
 template <int dim>
@@ -105,9 +119,43 @@ double with_dashpots(double omega2, double time) {
 KERF_INSTANTIATE(2)
 KERF_INSTANTIATE(3)
 
+template <int dim>
+std::vector<double> wall_sums(std::span<const Tool<dim>> tools,
+                              std::span<const WallContacts<dim>> contacts, const Particles<dim>& p,
+                              const Boundary<dim>& boundary) {
+  std::vector<double> sums(p.size(), 0.0), to_come(p.size(), 0.0);
+  for (std::size_t k = 0; k < tools.size(); ++k) {
+    const WallMaterial& material = contacts[k].material();
+    const double stiffness = std::max(material.normal_stiffness, material.tangential_stiffness);
+    const double of_one = stiffness * tools[k].mobility(tools[k].pose().reference);
+    double of_tool = 0.0; // rad²/s²
+    std::vector<int> count(p.size(), 0);
+    contacts[k].for_each([&](const WallContact<dim>& contact, const FacetContact<dim>& place) {
+      of_tool += stiffness * tools[k].mobility(tools[k].pose().to_space(place.point));
+      ++count[contact.particle];
+    });
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const double of_particle = wall_eigenvalue(material, p, boundary, i);
+      if (count[i] > 0)
+        sums[i] += count[i] * of_particle + of_tool;
+      else
+        to_come[i] = std::max(to_come[i], of_particle + of_one);
+    }
+  }
+  for (std::size_t i = 0; i < p.size(); ++i)
+    sums[i] += to_come[i];
+  return sums;
+}
+
 template double row_sum<2>(const Contacts<2>&, const Incidence&, const Particles<2>&,
                            const Boundary<2>&, std::size_t);
 template double row_sum<3>(const Contacts<3>&, const Incidence&, const Particles<3>&,
                            const Boundary<3>&, std::size_t);
+template std::vector<double> wall_sums<2>(std::span<const Tool<2>>,
+                                          std::span<const WallContacts<2>>, const Particles<2>&,
+                                          const Boundary<2>&);
+template std::vector<double> wall_sums<3>(std::span<const Tool<3>>,
+                                          std::span<const WallContacts<3>>, const Particles<3>&,
+                                          const Boundary<3>&);
 
 } // namespace kerf::dem

@@ -4,8 +4,12 @@
 #include "dem_core/boundary.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/particles.hpp"
+#include "dem_core/tool.hpp"
+#include "dem_core/wall_contacts.hpp"
 
 #include <cstddef>
+#include <span>
+#include <vector>
 
 namespace kerf::dem {
 
@@ -32,5 +36,19 @@ double dashpot_time(const Contacts<dim>& contacts, const Particles<dim>& particl
 /// @see T. Belytschko & T.J.R. Hughes (eds), Computational Methods for Transient Analysis (1983),
 ///      chapter 1
 double with_dashpots(double omega2, double time);
+
+/// What tools add to the row sum of every particle, rad²/s²; [n].
+///
+/// The stiffness of a contact with a tool that moves as told only concerns its particle. So it adds
+/// to the largest eigenvalue no more than its own one, max(k_n / m, k_t (1 / m + r² / I)), whatever
+/// its normal is. A free tool of mass M adds the sum of max(k_n, k_t) / M of all its contacts, its
+/// rotation likewise, to every particle that it touches; so its own limit is counted, too. As tools
+/// come to touch what they do not touch yet, every particle counts one contact more: that with the
+/// stiffest of the other tools.
+/// @see H. Weyl, Math. Ann. 71 (1912) 441-479, doi:10.1007/BF01456804
+template <int dim>
+std::vector<double> wall_sums(std::span<const Tool<dim>> tools,
+                              std::span<const WallContacts<dim>> contacts,
+                              const Particles<dim>& particles, const Boundary<dim>& boundary);
 
 } // namespace kerf::dem

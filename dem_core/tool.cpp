@@ -21,15 +21,17 @@ template <int dim>
 Tool<dim>::Tool(ToolShape<dim> shape, const ToolMotion<dim>& motion)
     : shape_(std::move(shape)),
       mover_(motion), pose_{motion.reference, motion.reference, rotation<dim>(0.0, mover_.axis())},
-      velocity_(mover_.initial_velocity()) {}
+      pose_before_(pose_), velocity_(mover_.initial_velocity()) {}
 
 template <int dim> void Tool<dim>::begin_step(std::uint64_t step, double time_step) {
   assert(time_step > 0.0 && (step == 0 || step == step_ + 1));
   step_ = step;
   time_step_ = time_step;
   const double t = static_cast<double>(step) * time_step;
+  pose_before_ = pose_;
+  angle_ = mover_.angle(t);
   pose_.reference = pose_.start + mover_.translation(t);
-  pose_.rotation = rotation<dim>(mover_.angle(t), mover_.axis());
+  pose_.rotation = rotation<dim>(angle_, mover_.axis());
   load_ = {};
 }
 

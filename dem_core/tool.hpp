@@ -37,6 +37,9 @@ public:
   void begin_step(std::uint64_t step, double time_step);
 
   const Pose<dim>& pose() const noexcept { return pose_; } // of t_n
+  /// Of t_(n-1); that of t_0 in the first step.
+  const Pose<dim>& pose_before() const noexcept { return pose_before_; }
+  double angle() const noexcept { return angle_; } // made about the axis since the start, rad
   /// With which the tool has come to t_n, v^(n-1/2); v^0 in the first step.
   const RigidVelocity<dim>& velocity() const noexcept { return velocity_; }
   /// The same of the point of the tool that is at x, m/s.
@@ -48,6 +51,8 @@ public:
   /// @param point      where it acts, m
   /// @param stiffness  normal stiffness of the contact, N/m; only a servo needs it
   void add_load(const Vec<dim>& force, const Vec<dim>& point, double stiffness);
+  /// The sum of many of them, about the reference point.
+  void add_load(const ToolLoad<dim>& load) { load_ += load; }
   /// Sums of add_load() in this step; the moment is about the reference point.
   const ToolLoad<dim>& load() const noexcept { return load_; }
 
@@ -59,12 +64,20 @@ public:
   /// Done on the particles from t_0 to t_n, after end_step(), J.
   double work() const noexcept { return work_; }
 
+  /// Bound of the acceleration that a unit force gives to a point, along the force, 1/kg; 0 where
+  /// the motion is not free.
+  double mobility(const Vec<dim>& point) const {
+    return mover_.inverse_mass() +
+           mover_.inverse_inertia() * (point - pose_.reference).squaredNorm();
+  }
+
 private:
   ToolShape<dim> shape_;
   ToolMover<dim> mover_;
   std::uint64_t step_ = 0;
   double time_step_ = 0.0; // s
-  Pose<dim> pose_;
+  Pose<dim> pose_, pose_before_;
+  double angle_ = 0.0; // rad
   RigidVelocity<dim> velocity_;
   ToolLoad<dim> load_;
   double power_ = 0.0;

@@ -61,6 +61,13 @@ template <int dim> struct ToolLoad {
   Rot<dim> moment = Rot<dim>::Zero(); // N m
   double stiffness = 0.0;             // sum of k_n of all contacts, N/m
 
+  ToolLoad& operator+=(const ToolLoad& other) {
+    force += other.force;
+    moment += other.moment;
+    stiffness += other.stiffness;
+    return *this;
+  }
+
   double power(const RigidVelocity<dim>& v) const { // W
     return force.dot(v.translation) + moment.dot(v.rotation);
   }
@@ -78,6 +85,13 @@ public:
   Vec<dim> translation(double t) const; // of the reference point since the start, m; t is t_n
   double angle(double t) const;         // since the start, rad; t is t_n
   Rot<dim> axis() const { return motion_.axis; }
+
+  double inverse_mass() const noexcept { // along free axes, 1/kg; 0 without one
+    return motion_.free_translation ? 1.0 / motion_.free_translation->mass : 0.0;
+  }
+  double inverse_inertia() const noexcept { // about the axis, 1/(kg m²); 0 unless it turns freely
+    return motion_.free_rotation ? 1.0 / motion_.free_rotation->inertia : 0.0;
+  }
 
   RigidVelocity<dim> initial_velocity() const; // v^0
   /// Velocity of the step that begins at t_n, v^(n+1/2), after which the state is that of t_(n+1).

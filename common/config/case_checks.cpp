@@ -51,6 +51,7 @@ private:
                      {"linear_by_size", {"contact_modulus", "stiffness_ratio"}},
                      {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}});
       check_probes(key, participant["probes"]);
+      check_tools(key, participant["tools"]);
     } else {
       check_elastic(key + ".material", participant["material"]);
     }
@@ -166,6 +167,61 @@ private:
                                     participant, file),
                         fmt::format("give \"{}\" another name.", file));
     }
+  }
+
+  void check_tools(const string& participant, const json& tools) {
+    std::set<string> names;
+    for (std::size_t k = 0; k < tools.size(); ++k) {
+      const string key = fmt::format("{}.tools[{}]", participant, k);
+      check_name(key, tools[k]["name"], "tools", names);
+      check_history(key, participant, tools[k]["name"]);
+      check_keys_of(key, tools[k], "shape", tools[k]["shape"],
+                    {{"plane", {"point", "normal"}}, {"file", {"file"}}, {"box", {"box"}}});
+      check_one_of(key, tools[k], "velocity", "velocities");
+      check_rotation(key, tools[k]);
+      if (const json& servo = tools[k]["servo"]; !servo.is_null()) {
+        check_one_of(key + ".servo", servo, "force", "forces");
+        if (servo["force"].is_null() && servo["forces"].is_null())
+          problems_.add(key + ".servo", key + ".servo has neither force nor forces.",
+                        "give the force that is wanted, or a table of forces.");
+      }
+      if (const json& free = tools[k]["free"]; !free.is_null())
+        check_components(key + ".free.axes", free["axes"]);
+    }
+  }
+
+  /// The history of a tool has the names of its participant and its own.
+  void check_history(const string& key, const string& participant, const string& tool) {
+    const string name = participant.substr(participant.rfind('.') + 1) + "_" + tool;
+    for (const auto& others : {participants_, couplings_})
+      if (std::find(others.begin(), others.end(), name) != others.end())
+        problems_.add(key + ".name",
+                      fmt::format("history/{0}.csv would be of {1}.name and of {0}.", name, key),
+                      "give one of them another name.");
+  }
+
+  void check_rotation(const string& key, const json& tool) {
+    const json& rotation = tool["rotation"];
+    const bool has_axis = !rotation.is_null() && !rotation["axis"].is_null();
+    if (!rotation.is_null())
+      check_one_of(key + ".rotation", rotation, "rate", "rates");
+    if (is_plane_ && has_axis)
+      problems_.add(key + ".rotation.axis",
+                    key + ".rotation.axis is given, but in 2D a tool turns in the plane.",
+                    "leave it out; a positive rate turns x towards y.");
+    const bool turns = !rotation.is_null() || !tool["free_rotation"].is_null();
+    if (!is_plane_ && turns && !has_axis)
+      problems_.add(key + ".rotation.axis", key + ".rotation.axis is missing.",
+                    "give the direction of the axis, for example [0.0, 0.0, 1.0].");
+  }
+
+  /// Two ways to give one quantity.
+  void check_one_of(const string& key, const json& table, const string& first,
+                    const string& second) {
+    if (!table[first].is_null() && !table[second].is_null())
+      problems_.add(
+          key + "." + second, fmt::format("{} has both {} and {}.", key, first, second),
+          fmt::format("give {} for one value, or {} for a table of times.", first, second));
   }
 
   void check_elastic(const string& key, const json& material) {

@@ -22,13 +22,15 @@ enum class Type {
   number,
   integer_or_auto,
   number_or_auto,
-  texts,    // [text…]
-  numbers,  // [number…]
-  pair,     // [text, text]
-  interval, // [number, number], the first below the second
-  vector,   // [number…], one per dimension of the case
-  counts,   // [integer…], one per dimension of the case
-  box       // [vector, vector], the lower and the upper corner
+  texts,           // [text…]
+  numbers,         // [number…]
+  pair,            // [text, text]
+  interval,        // [number, number], the first below the second
+  vector,          // [number…], one per dimension of the case
+  counts,          // [integer…], one per dimension of the case
+  box,             // [vector, vector], the lower and the upper corner
+  numbers_of_time, // [[time, number]…], the times ascend
+  vectors_of_time  // [[time, number per dimension…]…], the times ascend
 };
 
 /// Numbers that are allowed; of arrays, each of their numbers.

@@ -221,7 +221,7 @@ std::vector<Key> motion_keys(const std::string& kind) {
 
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
-                 motion_keys("dem"), watch_of_particles()});
+                 tool_keys(), motion_keys("dem"), watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {

@@ -69,7 +69,8 @@ template <class Value> Field field(const char* name, const std::vector<Value>& v
 
 template <int dim>
 void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
-                     const Engine<dim>& engine, const Fragments& fragments) {
+                     const Engine<dim>& engine, const Fragments& fragments,
+                     std::span<const Grid> tools) {
   const Particles<dim>& p = engine.particles();
   const Contacts<dim>& c = engine.contacts();
   const RowOrder order(p.ids);
@@ -109,7 +110,7 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
   const auto tangential_stiffness = of_contacts(c.tangential_stiffness);
   const auto contact_weight = of_contacts(c.weight);
 
-  const Grid grids[] = {
+  std::vector<Grid> grids = {
       {.name = "particles",
        .positions = std::get<0>(field("position", position).data),
        .points_of = {},
@@ -131,12 +132,13 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
            field("bonded", bonded), field("normal_force", normal_force),
            field("tangential_force", tangential_force), field("normal_stiffness", normal_stiffness),
            field("tangential_stiffness", tangential_stiffness), field("weight", contact_weight)}}};
+  grids.insert(grids.end(), tools.begin(), tools.end());
   frames.write(step, time, grids);
 }
 
 template void write_dem_frame<2>(FrameWriter&, std::uint64_t, double, const Engine<2>&,
-                                 const Fragments&);
+                                 const Fragments&, std::span<const Grid>);
 template void write_dem_frame<3>(FrameWriter&, std::uint64_t, double, const Engine<3>&,
-                                 const Fragments&);
+                                 const Fragments&, std::span<const Grid>);
 
 } // namespace kerf::dem

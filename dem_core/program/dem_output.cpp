@@ -44,8 +44,8 @@ DemOutput<dim>::DemOutput(Engine<dim>& engine, const Watch<dim>& watch,
                           const std::filesystem::path& run_folder, const std::string& name)
     : engine_(engine), frames_(run_folder, name, dim),
       history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()),
-      cracks_(run_folder / "history" / (name + "_cracks.csv")), domain_(watch.domain),
-      fragments_(find_fragments(engine.contacts(), engine.particles())) {
+      cracks_(run_folder / "history" / (name + "_cracks.csv")), tools_(engine, run_folder, name),
+      domain_(watch.domain), fragments_(find_fragments(engine.contacts(), engine.particles())) {
   for (const Probe<dim>& probe : watch.probes)
     probes_.emplace_back(run_folder / "history" / (name + "_" + probe.name + ".csv"), probe.box);
 }
@@ -55,7 +55,9 @@ template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double t
   write_cracks();
   check(step, time);
   const Stopwatch stopwatch(seconds_);
-  write_dem_frame(frames_, step, time, engine_, fragments());
+  std::vector<Grid> tools;
+  tools_.add_grids(tools);
+  write_dem_frame(frames_, step, time, engine_, fragments(), tools);
 }
 
 template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double time) {
@@ -83,6 +85,7 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
   const Vec<dim> momentum = engine_.momentum();
   row.insert(row.end(), momentum.begin(), momentum.end());
   history_.append(row);
+  tools_.write_history(step, time);
   for (ProbeFile<dim>& probe : probes_)
     probe.write(step, time, engine_);
 }

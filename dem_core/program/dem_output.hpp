@@ -1,4 +1,5 @@
-// What kerf-dem writes into the run folder: frames of particles and contacts, a history, cracks.
+// What kerf-dem writes into the run folder: frames of particles, contacts and tools, histories,
+// cracks.
 #pragma once
 
 #include "common/history.hpp"
@@ -7,6 +8,7 @@
 #include "dem_core/fragments.hpp"
 #include "dem_core/program/crack_file.hpp"
 #include "dem_core/program/probe_file.hpp"
+#include "dem_core/program/tool_output.hpp"
 #include "dem_core/program/watch.hpp"
 
 #include <filesystem>
@@ -45,6 +47,7 @@ private:
   History history_;
   CrackFile<dim> cracks_;
   std::vector<ProbeFile<dim>> probes_;
+  ToolOutput<dim> tools_;
   std::optional<Box<dim>> domain_;
   Fragments fragments_;
   std::size_t cracks_of_fragments_ = 0; // that there were when they were found

@@ -1,9 +1,9 @@
 #include "dem_core/program/read_settings.hpp"
 
 #include "common/packing_file.hpp"
-#include "coupler/participant/participant.hpp"
 #include "dem_core/bonding.hpp"
 #include "dem_core/lattice.hpp"
+#include "dem_core/program/read_tools.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,100 +15,6 @@
 namespace kerf::dem {
 
 namespace {
-
-using coupler::SettingsError;
-using nlohmann::json;
-
-/// A value of the table that knows its key, for error messages.
-class Node {
-public:
-  Node(const json& value, std::string key) : value_(&value), key_(std::move(key)) {}
-
-  const std::string& key() const { return key_; }
-  std::size_t size() const { return value_->size(); }
-  bool is_null() const { return value_->is_null(); }
-  [[noreturn]] void fail(const std::string& sentence) const { throw SettingsError(key_, sentence); }
-
-  /// A member; null when it is missing.
-  Node operator[](std::string_view name) const {
-    static const json missing;
-    const auto member = value_->is_object() ? value_->find(name) : value_->end();
-    const std::string key = key_.empty() ? std::string(name) : fmt::format("{}.{}", key_, name);
-    return {value_->is_object() && member != value_->end() ? *member : missing, key};
-  }
-  Node operator[](std::size_t index) const {
-    return {value_->at(index), fmt::format("{}[{}]", key_, index)};
-  }
-
-  double number() const {
-    if (!value_->is_number())
-      fail(is_null() ? "a number is missing here" : "this must be a number");
-    return value_->get<double>();
-  }
-  double number_or(double other) const { return is_null() ? other : number(); }
-  double positive() const {
-    const double value = number();
-    if (!(value > 0.0))
-      fail(fmt::format("{} must be positive", value));
-    return value;
-  }
-  double not_negative_or(double other) const {
-    const double value = number_or(other);
-    if (!(value >= 0.0))
-      fail(fmt::format("{} must not be negative", value));
-    return value;
-  }
-  double share() const {
-    const double value = number_or(0.0);
-    if (!(value >= 0.0 && value <= 1.0))
-      fail(fmt::format("{} must be from 0 to 1", value));
-    return value;
-  }
-  std::string text() const {
-    if (!value_->is_string())
-      fail(is_null() ? "a word is missing here" : "this must be a word in quotes");
-    return value_->get<std::string>();
-  }
-  /// The value that a word stands for.
-  template <class Value> Value one_of(const std::map<std::string, Value>& words) const {
-    const auto found = words.find(text());
-    if (found != words.end())
-      return found->second;
-    std::string allowed;
-    for (const auto& [word, value] : words)
-      allowed += (allowed.empty() ? "" : ", ") + word;
-    fail(fmt::format("\"{}\" must be one of {}", text(), allowed));
-  }
-  void must_hold(std::size_t count, const char* what) const {
-    if (!value_->is_array() || value_->size() != count)
-      fail(fmt::format("this must be a list of {} {}", count, what));
-  }
-  template <int dim> Vec<dim> vector() const {
-    must_hold(dim, "numbers");
-    Vec<dim> vector;
-    for (std::size_t a = 0; a < dim; ++a)
-      vector[static_cast<int>(a)] = (*this)[a].number();
-    return vector;
-  }
-  template <int dim> Vec<dim> vector_or_zero() const {
-    return is_null() ? Vec<dim>(Vec<dim>::Zero()) : vector<dim>();
-  }
-  template <int dim> Box<dim> box() const {
-    must_hold(2, "corners");
-    return {(*this)[0].vector<dim>(), (*this)[1].vector<dim>()};
-  }
-  template <int dim> int axis() const {
-    const std::string word = text();
-    const auto axis = std::string("xyz").substr(0, dim).find(word);
-    if (word.size() != 1 || axis == std::string::npos)
-      fail(fmt::format("\"{}\" is not an axis in {}D", word, dim));
-    return static_cast<int>(axis);
-  }
-
-private:
-  const json* value_;
-  std::string key_;
-};
 
 const std::map<std::string, LatticeType> lattice_types = {{"chain", LatticeType::chain},
                                                           {"triangular", LatticeType::triangular},
@@ -282,6 +188,8 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
     s.boundary.push_back(read_prescription<dim>(node["boundary"][k]));
   for (std::size_t k = 0; k < node["initial"].size(); ++k)
     s.initial.push_back(read_initial<dim>(node["initial"][k]));
+  s.gravity = node["gravity"].vector_or_zero<dim>();
+  s.tools = read_tools<dim>(node["tools"]);
   return s;
 }
 

@@ -120,5 +120,51 @@ TEST_F(PackingFile, faults_are_told_with_their_line) {
   EXPECT_EQ(error_of("# nothing\n"), " holds no particle");
 }
 
+json tool_table() {
+  return json::parse(R"([{
+    "name": "mill", "shape": "box", "point": null, "normal": null, "file": null, "tag": null,
+    "scale": 1.0, "box": [[0.0, 1.0], [0.2, 2.0]], "normal_stiffness": 5e10,
+    "tangential_stiffness": 1e10, "friction": 0.3, "seated": true, "reference": null,
+    "velocity": null, "velocities": [[0.0, 0.0, 1.0], [2.0, 0.0, 5.0]],
+    "rotation": {"axis": null, "rate": 2.0, "rates": null},
+    "servo": {"direction": [1.0, 0.0], "force": null, "forces": [[0.0, 0.0], [1.0, 8.0]],
+              "max_velocity": 0.1},
+    "free": null, "free_rotation": {"inertia": 0.5, "moment": 0.25}}])");
+}
+
+TEST(DemSettings, of_tools_are_read_with_their_tables_of_times) {
+  auto t = table();
+  t["tools"] = tool_table();
+  t["gravity"] = {0.0, -9.81};
+  const auto s = dem::read_settings<2>(t, case_table());
+  EXPECT_EQ(s.gravity, (Vec<2>(0.0, -9.81)));
+  ASSERT_EQ(s.tools.size(), 1u);
+  const auto& tool = s.tools[0];
+  EXPECT_EQ(tool.name, "mill");
+  EXPECT_EQ(tool.material.normal_stiffness, 5e10);
+  EXPECT_TRUE(tool.material.seated);
+  EXPECT_DOUBLE_EQ(enclosed_volume(*tool.shape.surface()), 0.2);
+  EXPECT_EQ(tool.motion.reference, (Vec<2>(0.1, 1.5)));
+  EXPECT_EQ(tool.motion.velocity[1].value(1.0), 3.0);
+  EXPECT_EQ(tool.motion.rotation_rate.value(7.0), 2.0);
+  EXPECT_EQ(tool.motion.servo->force.value(0.5), 4.0);
+  EXPECT_EQ(tool.motion.free_rotation->moment, 0.25);
+  EXPECT_FALSE(tool.motion.free_translation);
+}
+
+TEST(DemSettings, of_tools_that_cannot_be_are_blamed_on_their_key) {
+  const auto blamed = [](const char* key, const json& value) {
+    auto t = table();
+    t["tools"] = tool_table();
+    t["tools"][0][key] = value;
+    return blamed_key(t);
+  };
+  EXPECT_EQ(blamed("box", {{0.0, 0.0}, {0.0, 1.0}}), "tools[0].box");
+  EXPECT_EQ(blamed("shape", "ball"), "tools[0].shape");
+  EXPECT_EQ(blamed("velocities", {{0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}}), "tools[0].velocities");
+  EXPECT_EQ(blamed("normal_stiffness", 0.0), "tools[0].normal_stiffness");
+  EXPECT_EQ(blamed("free", {{"axes", {"x"}}, {"mass", 1.0}, {"force", nullptr}}), "tools[0]");
+}
+
 } // namespace
 } // namespace kerf

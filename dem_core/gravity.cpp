@@ -1,0 +1,31 @@
+#include "dem_core/gravity.hpp"
+
+#include "common/ordered_sum.hpp"
+
+namespace kerf::dem {
+
+template <int dim>
+void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, Loads<dim>& loads) {
+  if (gravity.isZero(0.0))
+    return;
+  const auto count = static_cast<std::int64_t>(particles.size());
+#pragma omp parallel for schedule(static) if (count > particles_per_block)
+  for (std::int64_t i = 0; i < count; ++i)
+    loads.own[i].force += particles.mass[i] * gravity;
+}
+
+template <int dim>
+double weight_work(const Vec<dim>& gravity, const Particles<dim>& p, double time_step) {
+  if (gravity.isZero(0.0))
+    return 0.0;
+  return ordered_sum(p.size(), [&](std::size_t i) {
+    return p.mass[i] * gravity.dot(p.displacement[i] - time_step * p.velocity[i]);
+  });
+}
+
+template void add_weight<2>(const Vec<2>&, const Particles<2>&, Loads<2>&);
+template void add_weight<3>(const Vec<3>&, const Particles<3>&, Loads<3>&);
+template double weight_work<2>(const Vec<2>&, const Particles<2>&, double);
+template double weight_work<3>(const Vec<3>&, const Particles<3>&, double);
+
+} // namespace kerf::dem
