@@ -17,7 +17,7 @@ namespace kerf::benchmarks {
 namespace {
 
 constexpr double mean_radius = 0.5e-3; // m
-constexpr double strain = 1e-3;        // of the waves
+constexpr double strain = 2e-4;        // of the waves
 
 const std::array<Workload, 6> workloads = {{{"bonded_3d_50k", 3, true, 50'000},
                                             {"bonded_3d_500k", 3, true, 500'000},
@@ -106,7 +106,7 @@ template <int dim> dem::Material rock() {
   material.normal_stiffness = dim == 2 ? 1e10 : 1e7;
   material.tangential_stiffness = 0.4 * material.normal_stiffness;
   material.friction = 0.5;
-  material.tensile_strength = 5 * strain * 2 * mean_radius * material.normal_stiffness;
+  material.tensile_strength = 3 * strain * 2 * mean_radius * material.normal_stiffness;
   material.shear_strength = material.tensile_strength;
   return material;
 }

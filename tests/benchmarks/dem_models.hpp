@@ -21,7 +21,7 @@ std::span<const Workload> dem_workloads();
 template <int dim> double edge_of(const Workload& workload);
 
 /// A dense random packing, taken from the cache of packings or made and kept there, in spatial
-/// order, with waves of a strain of a thousandth travelling through it.
+/// order, with waves of a small strain travelling through it.
 ///
 /// Bonded: a block with free faces, 3.1 bonds a particle, in 2D 2.07, few of which break.
 /// Otherwise: periodic, compressed so that its contacts carry, without bonds, with Coulomb

@@ -101,7 +101,7 @@ nlohmann::json machine(std::span<const int> threads) {
   for (const int count : threads) {
     omp_set_num_threads(count);
     const double bandwidth = triad(), rate = multiply_adds();
-    fmt::print("{} threads: triad {:.1f} GB/s, multiply-add {:.1f} GFLOP/s\n", count, bandwidth,
+    fmt::print("threads {}: triad {:.1f} GB/s, multiply-add {:.1f} GFLOP/s\n", count, bandwidth,
                rate);
     figures["triad"][std::to_string(count)]["limit"] = bandwidth;
     figures["fma"][std::to_string(count)]["limit"] = rate;
