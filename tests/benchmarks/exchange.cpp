@@ -3,6 +3,7 @@
 #include "coupler/broker/coupling.hpp"
 #include "coupler/channel/channel.hpp"
 #include "coupler/channel/frame_layout.hpp"
+#include "tests/benchmarks/statistics.hpp"
 
 #include <fmt/format.h>
 #include <linux/futex.h>
@@ -246,11 +247,6 @@ double channel_step(Model& model, const std::string& transport, bool work, int s
     for (int side = 0; side < 2; ++side)
       close(address[side].descriptor);
   return value;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 } // namespace
