@@ -1,8 +1,9 @@
-# kerf_python_test(NAME FILE CASE LABELS…) - one unittest class of a script that starts kerf.
+# kerf_python_test(NAME FILE CASE LABELS…) - one unittest class of a script that starts kerf. It also
+# has the label process.
 function(kerf_python_test name file class)
   add_test(NAME ${name} COMMAND ${KERF_PYTHON} ${CMAKE_SOURCE_DIR}/tests/${file} -v ${class})
   set_tests_properties(
-    ${name} PROPERTIES LABELS "${ARGN}" ENVIRONMENT
+    ${name} PROPERTIES LABELS "process;${ARGN}" ENVIRONMENT
                        "KERF_PROGRAMS=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1"
                        TIMEOUT 600)
 endfunction()
