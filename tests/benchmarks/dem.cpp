@@ -36,7 +36,7 @@ template <int dim>
 Speeds time_in_turn(const Workload& workload, const DemOptions& options,
                     const dem::Engine<dim>& engine, const Peers<dim>* peers) {
   const int steps = steps_of(options, engine.size());
-  const int peer_steps = std::max(10, steps / 8); // slower
+  const int peer_steps = std::max(20, steps / 4); // slower
   const auto speed = [&](double seconds) {
     return 1e-6 * static_cast<double>(engine.size()) / seconds;
   };

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <fstream>
 #include <stdexcept>
 
@@ -22,6 +23,7 @@ nlohmann::json machine_and_dem(const DemOptions& options, bool sweep) {
 } // namespace
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ); // rows appear when they are known, in a file, too
   CLI::App app{"Times kerf. Take timings alone: other work on the machine shows in them."};
   app.require_subcommand(1);
   std::string json_file;

@@ -16,7 +16,7 @@ namespace kerf::benchmarks {
 namespace {
 
 /// Of the bonds in LAMMPS, which has one length for all bonds of a type.
-constexpr int length_classes = 1000;
+constexpr int length_classes = 10'000;
 
 struct Code {
   const char* name;
