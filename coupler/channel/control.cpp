@@ -115,6 +115,9 @@ struct ControlClient::Socket {
   zmq::context_t context;
   zmq::socket_t dealer{context, zmq::socket_type::dealer};
   zmq::socket_t events{context, zmq::socket_type::pair}; // tells when the connection breaks
+
+  /// No event may come once nobody listens: libzmq would lose the memory of its message.
+  ~Socket() { zmq_socket_monitor(dealer.handle(), nullptr, 0); }
 };
 
 ControlClient::ControlClient(const std::string& endpoint) : socket_(std::make_unique<Socket>()) {
