@@ -29,6 +29,7 @@ inline constexpr int width = 2;
 
 using Lanes = double __attribute__((vector_size(8 * width)));      // one number of each contact
 using Mask = std::int64_t __attribute__((vector_size(8 * width))); // -1: true
+using Row2 = double __attribute__((vector_size(16)));              // two numbers of one contact
 using Row4 = double __attribute__((vector_size(32)));              // four numbers of one contact
 using Row8 = double __attribute__((vector_size(64)));              // eight numbers of one contact
 
@@ -74,18 +75,17 @@ KERF_INLINE Mask load_flags(const std::uint8_t* from) {
   return Mask{-static_cast<std::int64_t>(from[0] != 0), -static_cast<std::int64_t>(from[1] != 0)};
 #endif
 }
-/// True when a number of the next ones is `wanted`.
-KERF_INLINE bool any_is(const std::uint32_t* from, std::uint32_t wanted) {
-  bool is = false;
-  for (int l = 0; l < width; ++l)
-    is |= from[l] == wanted;
-  return is;
-}
-
-KERF_INLINE Row4 load_row4(const double* from) {
-  Row4 row;
-  std::memcpy(&row, from, sizeof row);
-  return row;
+/// Row p of an array of aligned vectors: two numbers a row in 2D, four in 3D.
+template <int dim> KERF_INLINE Row4 load_row(const double* array, std::size_t p) {
+  if constexpr (dim == 2) {
+    Row2 row;
+    std::memcpy(&row, array + 2 * p, sizeof row);
+    return __builtin_shufflevector(row, Row2{}, 0, 1, 2, 3);
+  } else {
+    Row4 row;
+    std::memcpy(&row, array + 4 * p, sizeof row);
+    return row;
+  }
 }
 
 KERF_INLINE bool any(const Mask& mask) {

@@ -62,8 +62,10 @@ struct ContactLosses {
   double friction = 0.0, fracture = 0.0, viscous = 0.0;
 };
 
-/// Pairs of particles that touch or soon may, ascending by (first, second). The normal points from
-/// `first` to `second`; tension is positive.
+/// Pairs of particles that touch or soon may. The normal points from `first` to `second`, the one
+/// of the larger index; tension is positive. In the list follow one another, each ascending by
+/// (first, second): of each block of particles the bonds of the start, what touched when the list
+/// was made, and what did not.
 template <int dim> struct Contacts {
   // One entry a contact.
   std::vector<std::uint32_t> first, second;
@@ -71,13 +73,13 @@ template <int dim> struct Contacts {
   std::vector<double> rest_length;  // centre distance without normal force, m
   std::vector<double> share;        // r_i / (r_i + r_j), part of the branch that is arm of i
   std::vector<std::uint8_t> bonded; // holds tension
-  std::vector<std::uint8_t> bonded_at_start; // stays in the list for ever
-  std::vector<double> normal_force;          // F_n, without weight, N
+  std::vector<double> normal_force; // F_n, without weight, N
   /// F_T on the first, without weight, N; in 2D along the normal turned by +90 degrees.
   Columns<rotations<dim>> shear_force;
 
   PerContact normal_stiffness, tangential_stiffness; // k_n, k_t, N/m
   PerContact tensile_strength, shear_strength;       // R_n, R_t, N
+  PerContact friction;                               // mu without bond
   PerContact weight;                                 // w_c, one until blended
 
   ContactLaw law = ContactLaw::linear;
@@ -91,6 +93,7 @@ template <int dim> struct Contacts {
   // particle of another block waits in a row behind those of the particles: block by block nobody
   // writes where another one does, and the rows are added in the order of the contacts.
   std::vector<std::uint32_t> block_offset;    // [blocks + 1] contacts of each block
+  std::vector<std::uint32_t> loose_offset;    // [blocks] where its bonds of the start end
   std::vector<std::uint32_t> target;          // [contacts] row of the loads of the second
   std::vector<std::uint32_t> waiting_offset;  // [blocks + 1] waiting rows that each block writes
   std::vector<std::uint32_t> incoming_offset; // [blocks + 1] of what each block receives:
@@ -103,7 +106,11 @@ template <int dim> struct Contacts {
   std::size_t blocks() const noexcept { return block_offset.size() - 1; }
   std::size_t waiting_rows() const noexcept { return incoming_row.size(); }
   std::size_t bonds() const noexcept; // that hold now
-  double memory() const;              // bytes
+  /// Stays in the list for ever.
+  bool bonded_at_start(std::size_t k) const noexcept {
+    return k < loose_offset[first[k] / particles_per_block];
+  }
+  double memory() const; // bytes
 
   /// A contact carries force when it is bonded or pressed together.
   bool carries(std::size_t k, double opening) const noexcept { return bonded[k] || opening < 0.0; }

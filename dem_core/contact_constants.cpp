@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -125,6 +126,7 @@ ContactLaw law_of(const Material& m) {
 template <int dim>
 void set_constants(Contacts<dim>& c, const Particles<dim>& particles, const Material& material) {
   c.law = law_of(material);
+  c.friction.set_all(material.friction);
   const std::pair<PerContact*, double Constants::*> constants[] = {
       {&c.normal_stiffness, &Constants::k_n},  {&c.tangential_stiffness, &Constants::k_t},
       {&c.tensile_strength, &Constants::R_n},  {&c.shear_strength, &Constants::R_t},
@@ -137,14 +139,20 @@ void set_constants(Contacts<dim>& c, const Particles<dim>& particles, const Mate
       target->set_all(all.*member);
     return;
   }
-  for (const auto& [target, member] : constants) {
-    std::vector<double> each(c.size());
-    for (std::size_t k = 0; k < c.size(); ++k)
-      each[k] = constants_of<dim>(material, particles.density, particles.radius[c.first[k]],
-                                  particles.radius[c.second[k]], c.bonded_at_start[k] != 0).*
-                member;
-    target->set_each(std::move(each));
+  std::array<std::vector<double>, std::size(constants)> each;
+  for (std::vector<double>& values : each)
+    values.resize(c.size());
+  const auto count = static_cast<std::int64_t>(c.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t k = 0; k < count; ++k) {
+    const Constants one =
+        constants_of<dim>(material, particles.density, particles.radius[c.first[k]],
+                          particles.radius[c.second[k]], c.bonded_at_start(k));
+    for (std::size_t which = 0; which < each.size(); ++which)
+      each[which][k] = one.*constants[which].second;
   }
+  for (std::size_t which = 0; which < each.size(); ++which)
+    constants[which].first->set_each(std::move(each[which]));
 }
 
 template void set_constants<2>(Contacts<2>&, const Particles<2>&, const Material&);

@@ -34,7 +34,7 @@ ContactConstant constant(const PerContact& values) {
 /// The view of all contacts, of no block in particular.
 template <int dim>
 ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increment<dim>& increment,
-                         ShearIncrement rule, double friction, Loads<dim>& loads) {
+                         ShearIncrement rule, Loads<dim>& loads) {
   ContactView<dim> view{};
   view.first = c.first.data();
   view.second = c.second.data();
@@ -47,6 +47,7 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
   view.tangential_stiffness = constant(c.tangential_stiffness);
   view.tensile_strength = constant(c.tensile_strength);
   view.shear_strength = constant(c.shear_strength);
+  view.friction = constant(c.friction);
   view.weight = constant(c.weight);
   view.normal_viscosity = constant(c.normal_viscosity);
   view.tangential_viscosity = constant(c.tangential_viscosity);
@@ -55,20 +56,17 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
   view.bond_lever = constant(c.bond_lever);
   view.rolling_limit = constant(c.rolling_limit);
   view.bonded = c.bonded.data();
-  view.bonded_at_start = c.bonded_at_start.data();
   view.normal_force = c.normal_force.data();
   for (int a = 0; a < ContactView<dim>::shear_components; ++a)
     view.shear[a] = c.shear_force.of[a].data();
   for (int a = 0; a < ContactView<dim>::shear_components; ++a)
     view.moment[a] = c.moment.of[a].data();
-  view.particles = static_cast<std::uint32_t>(p.size());
   view.displacement = p.displacement.front().data();
   view.translation = increment.translation.front().data();
   view.rotation = increment.rotation.front().data();
   view.scale = increment.scale;
   view.rate = increment.time > 0.0 ? 1.0 / increment.time : 0.0;
   view.half = rule == ShearIncrement::midpoint ? 0.5 : 0.0;
-  view.friction = friction;
   view.loads = reinterpret_cast<double*>(loads.own.data());
   view.on_break = append;
   return view;
@@ -79,10 +77,10 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
 template <int dim>
 std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particles<dim>& particles,
                                           const Increment<dim>& increment, ShearIncrement rule,
-                                          double friction, Loads<dim>& loads) {
+                                          Loads<dim>& loads) {
   const std::size_t n = particles.size();
   loads.own.resize(n + contacts.waiting_rows());
-  const auto all = view_of(contacts, particles, increment, rule, friction, loads);
+  const auto all = view_of(contacts, particles, increment, rule, loads);
   const ContactKernel<dim> compute = kernel<dim>(contacts.law);
   const auto blocks = static_cast<std::int64_t>(contacts.blocks());
   std::vector<std::vector<Break>> breaks(contacts.blocks());
@@ -99,6 +97,7 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
       std::fill(row(contacts.waiting_offset[b]), row(contacts.waiting_offset[b + 1]), Load<dim>());
       ContactView<dim> view = all;
       view.begin = contacts.block_offset[b];
+      view.loose = contacts.loose_offset[b];
       view.end = contacts.block_offset[b + 1];
       view.breaks = &breaks[b];
       compute(view);
@@ -110,6 +109,9 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
     for (std::int64_t b = 0; b < blocks; ++b)
       for (std::uint32_t e = contacts.incoming_offset[b]; e < contacts.incoming_offset[b + 1];
            ++e) {
+        const std::size_t ahead = std::min<std::size_t>(e + 16, contacts.waiting_rows() - 1);
+        __builtin_prefetch(&loads.own[contacts.incoming_row[ahead]]);
+        __builtin_prefetch(&loads.own[contacts.incoming_second[ahead]]);
         Load<dim>& load = loads.own[contacts.incoming_second[e]];
         const Load<dim>& waiting = loads.own[contacts.incoming_row[e]];
         load.force += waiting.force;
@@ -123,10 +125,10 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
 }
 
 template std::vector<Break> compute_contact_forces<2>(Contacts<2>&, const Particles<2>&,
-                                                      const Increment<2>&, ShearIncrement, double,
+                                                      const Increment<2>&, ShearIncrement,
                                                       Loads<2>&);
 template std::vector<Break> compute_contact_forces<3>(Contacts<3>&, const Particles<3>&,
-                                                      const Increment<3>&, ShearIncrement, double,
+                                                      const Increment<3>&, ShearIncrement,
                                                       Loads<3>&);
 
 } // namespace kerf::dem

@@ -12,8 +12,8 @@ namespace kerf::dem {
 /// How far every particle has moved and turned since the forces were last computed: scale times
 /// the two fields, which are velocities with scale = dt, or displacements with scale = 1.
 template <int dim> struct Increment {
-  std::span<const Vec<dim>> translation; // [n]
-  std::span<const Rot<dim>> rotation;    // [n]
+  std::span<const Aligned<Vec<dim>>> translation; // [n]
+  std::span<const Aligned<Rot<dim>>> rotation;    // [n]
   double scale = 1.0;
   double time = 0.0; // that it took, s; 0: none, and dashpots do not act
 };
@@ -56,6 +56,6 @@ struct Break {
 template <int dim>
 std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particles<dim>& particles,
                                           const Increment<dim>& increment, ShearIncrement rule,
-                                          double friction, Loads<dim>& loads);
+                                          Loads<dim>& loads);
 
 } // namespace kerf::dem

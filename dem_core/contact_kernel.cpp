@@ -1,7 +1,7 @@
 // The force of bonded and of frictional contacts, several at a time. Compiled once for every set of
 // instructions; see contact_forces.hpp for what is computed and cmake/instruction_sets.cmake.
 #include "common/lanes.hpp"
-#include "dem_core/contact_batch.hpp"
+#include "dem_core/contact_chunk.hpp"
 #include "dem_core/contact_laws.hpp"
 #include "dem_core/contact_view.hpp"
 
@@ -13,10 +13,22 @@ using dem::BreakMode;
 /// How the two particles of a contact have moved during the increment.
 template <int dim> struct Increments {
   static constexpr int rotations = ContactView<dim>::shear_components;
-  LaneVector<dim> branch, normal;       // at the end
+  LaneVector<dim> normal;               // at the end
+  Lanes length;                         // of the branch at the end, m
   LaneVector<dim> moved;                // of the branch, m
   LaneVector<rotations> turn_i, turn_j; // rad
   Lanes share;                          // of the branch that is arm of the first
+
+  template <bool whole> KERF_INLINE explicit Increments(const Batch<dim, whole>& batch) {
+    const ContactView<dim>& c = batch.c;
+    normal = batch.column(batch.chunk.normal);
+    length = load(&batch.chunk.length[batch.at]);
+    moved = scaled(broadcast(c.scale), batch.column(batch.chunk.moved));
+    turn_i = scaled(broadcast(c.scale), batch.column(batch.chunk.turn_first));
+    turn_j = scaled(broadcast(c.scale), batch.column(batch.chunk.turn_second));
+    share = batch.get(c.share);
+  }
+  KERF_INLINE LaneVector<dim> branch() const { return scaled(length, normal); }
 };
 
 /// What came along with the contact to the end of the increment, and the slip; both are tangential.
@@ -34,7 +46,7 @@ KERF_INLINE Carried<2> carry(const Batch<2, whole>& batch, const Increments<2>& 
                              const Lanes& fade, const Lanes& k_t) {
   const ContactView<2>& c = batch.c;
   const Lanes turned = m.turn_j[0] + m.share * (m.turn_i[0] - m.turn_j[0]);
-  const LaneVector<2> middle = sum(m.branch, broadcast(-c.half), m.moved);
+  const LaneVector<2> middle = sum(m.branch(), broadcast(-c.half), m.moved);
   const Lanes length2 = dot(middle, middle);
   Carried<2> result;
   result.slip[0] = inverse_square_root(length2) *
@@ -55,15 +67,16 @@ template <bool with_moment, bool whole>
 KERF_INLINE Carried<3> carry(const Batch<3, whole>& batch, const Increments<3>& m,
                              const Lanes& fade, const Lanes& k_t) {
   const ContactView<3>& c = batch.c;
-  const LaneVector<3> middle = sum(m.branch, broadcast(-0.5), m.moved);
+  const LaneVector<3> branch = m.branch();
+  const LaneVector<3> middle = sum(branch, broadcast(-0.5), m.moved);
   const Lanes inverse_middle2 = inverse(dot(middle, middle));
 
   LaneVector<3> turned;
   for (int a = 0; a < 3; ++a)
     turned[a] = m.turn_j[a] + m.share * (m.turn_i[a] - m.turn_j[a]);
   const bool at_end = c.half == 0.0;
-  const LaneVector<3>& lever = at_end ? m.branch : middle;
-  const Lanes inverse_lever2 = at_end ? inverse(dot(m.branch, m.branch)) : inverse_middle2;
+  const LaneVector<3>& lever = at_end ? branch : middle;
+  const Lanes inverse_lever2 = at_end ? inverse(dot(branch, branch)) : inverse_middle2;
   Carried<3> result;
   result.slip = sum(m.moved, broadcast(-1.0), cross(turned, lever));
   result.slip = sum(result.slip, -inverse_lever2 * dot(m.moved, lever), lever);
@@ -96,9 +109,10 @@ template <int dim> struct MomentLaw {
   Lanes k_b;                    // N m
 
   template <bool whole>
-  KERF_INLINE MomentLaw(const Batch<dim, whole>& batch, const Increments<dim>& m,
-                        const LaneVector<rotations>& carried, const Lanes& bending_stiffness)
+  KERF_INLINE MomentLaw(const Batch<dim, whole>& batch, const LaneVector<rotations>& carried,
+                        const Lanes& bending_stiffness)
       : k_b(bending_stiffness) {
+    const Increments<dim> m(batch);
     const LaneVector<rotations> apart = sum(m.turn_j, broadcast(-1.0), m.turn_i); // rad
     if constexpr (dim == 2) {
       moment[0] = carried[0] + k_b * apart[0];
@@ -114,12 +128,12 @@ template <int dim> struct MomentLaw {
 
   /// Bounds the moment of free contacts; returns what that loses, with half a mean, J.
   template <bool whole>
-  KERF_INLINE Lanes release(const Batch<dim, whole>& batch, const Increments<dim>& m,
+  KERF_INLINE Lanes release(const Batch<dim, whole>& batch, const LaneVector<dim>& n,
                             const LaneVector<rotations>& carried, const Mask& free,
                             const Lanes& F_n) {
     const LaneVector<rotations> trial = moment;
     if constexpr (dim == 3) // no twist
-      moment = sum(moment, select(free, -dot(moment, m.normal), Lanes{}), m.normal);
+      moment = sum(moment, select(free, -dot(moment, n), Lanes{}), n);
     const Lanes limit = batch.get(batch.c.rolling_limit) * absolute(F_n);
     const Lanes size2 = dot(moment, moment);
     const Mask rolls = free & (size2 > limit * limit);
@@ -130,50 +144,73 @@ template <int dim> struct MomentLaw {
   }
 };
 
-/// Force and moment of some contacts; docs in contact_forces.hpp. `more`: with dashpots and
-/// moments.
-template <int dim, class Law, bool more, bool whole>
-KERF_INLINE void update(ContactView<dim>& c, std::size_t k) {
-  constexpr int shears = ContactView<dim>::shear_components;
-  const Batch<dim, whole> batch(c, k);
-  const LaneVector<dim> relative = batch.template difference<dim>(c.displacement);
+/// The first pass: where the contacts are. The difference of the squares of length and rest length
+/// comes from the displacement, so that it keeps its digits when it is small; bonds are free of
+/// stress at their reference.
+template <int dim, bool bonds, bool whole>
+KERF_INLINE void find_opening(const Batch<dim, whole>& batch, Chunk<dim>& chunk) {
+  const LaneVector<dim> relative = batch.column(chunk.relative);
   LaneVector<dim> B;
   for (int a = 0; a < dim; ++a)
-    B[a] = batch.get(c.reference_branch[a]);
-  if (!whole) // lanes beyond the end: any branch that is not zero
+    B[a] = batch.get(batch.c.reference_branch[a]);
+  if (!whole) // beyond the count: any branch that is not zero
     for (int l = batch.count; l < width; ++l)
       B[0][l] = 1.0 - relative[0][l];
-  Increments<dim> m;
-  m.branch = sum(B, broadcast(1.0), relative);
-  const Lanes length2 = dot(m.branch, m.branch);
+  const LaneVector<dim> branch = sum(B, broadcast(1.0), relative);
+  const Lanes length2 = dot(branch, branch);
   const Lanes inverse_length = inverse_square_root(length2);
   const Lanes length = length2 * inverse_length;
-  // The difference of squares of length and rest length, from the displacement, so that it keeps
-  // its digits when it is small; bonds are free of stress at their reference.
-  const Lanes rest = batch.get(c.rest_length);
-  const Lanes start = select(batch.flags(c.bonded_at_start), Lanes{}, dot(B, B) - rest * rest);
-  const Lanes opening =
-      (dot(relative, sum(relative, broadcast(2.0), B)) + start) * inverse(length + rest);
+  const Lanes rest = batch.get(batch.c.rest_length);
+  Lanes growth = dot(relative, sum(relative, broadcast(2.0), B));
+  if constexpr (!bonds)
+    growth += dot(B, B) - rest * rest;
+  batch.set_column(chunk.normal, scaled(inverse_length, branch));
+  store(&chunk.length[batch.at], length);
+  store(&chunk.opening[batch.at], growth * inverse(length + rest));
+}
 
-  const Mask bonded = batch.flags(c.bonded);
-  if (!any(bonded | (opening < 0.0))) // all open: nothing to do, unless one has just opened
-    if (!any(batch.get(c.normal_force) != 0.0))
-      return;
+/// True for pairs within the skin that are apart and were: there is nothing to do.
+template <int dim> KERF_INLINE bool all_apart(const ContactView<dim>& c, const Chunk<dim>& chunk) {
+  Mask touch{};
+  for_batches(c, chunk, [&](auto batch) KERF_LAMBDA {
+    touch |= (load(&chunk.opening[batch.at]) < 0.0) | (batch.get(c.normal_force) != 0.0);
+  });
+  return !any(touch);
+}
 
-  m.normal = scaled(inverse_length, m.branch);
-  m.moved = scaled(broadcast(c.scale), batch.template difference<dim>(c.translation));
-  m.turn_i = scaled(broadcast(c.scale), batch.template gathered<shears>(c.rotation, c.first));
-  m.turn_j = scaled(broadcast(c.scale), batch.template gathered<shears>(c.rotation, c.second));
-  m.share = batch.get(c.share);
-  const LaneVector<dim>& n = m.normal;
-  const Lanes k_n = batch.get(c.normal_stiffness);
-  const Lanes k_t = Law::tangential_stiffness(batch.get(c.tangential_stiffness), opening);
+/// The second pass: what comes along, eq. 13.
+template <int dim, class Law, bool more, bool whole>
+KERF_INLINE void carry_history(const Batch<dim, whole>& batch, Chunk<dim>& chunk) {
+  const Increments<dim> m(batch);
+  const Lanes opening = load(&chunk.opening[batch.at]);
+  const Lanes k_t = Law::tangential_stiffness(batch.get(batch.c.tangential_stiffness), opening);
   Lanes fade = broadcast(1.0); // of the tangential force as a stiffening contact is released
   if (Law::stiffens) {
-    const Lanes before = opening - dot(m.moved, n);
+    const Lanes before = opening - dot(m.moved, m.normal);
     fade = select((opening > before) & (opening < 0.0), square_root(opening / before), fade);
   }
-  const Carried<dim> carried = carry<more>(batch, m, fade, k_t); // eq. 13
+  const Carried<dim> carried = carry<more>(batch, m, fade, k_t);
+  batch.set_column(chunk.trial, carried.trial);
+  batch.set_column(chunk.slip, carried.slip);
+  if constexpr (more)
+    batch.set_column(chunk.carried_moment, carried.moment);
+}
+
+/// The third pass: what the contacts can bear, and what they do to the particles. `more`: with
+/// dashpots and moments.
+template <int dim, class Law, bool more, bool bonds, bool whole>
+KERF_INLINE void bound(ContactView<dim>& c, const Batch<dim, whole>& batch, Chunk<dim>& chunk) {
+  constexpr int shears = ContactView<dim>::shear_components;
+  const LaneVector<dim> n = batch.column(chunk.normal);
+  const Lanes opening = load(&chunk.opening[batch.at]), length = load(&chunk.length[batch.at]);
+  const Mask bonded = bonds ? batch.flags(c.bonded) : Mask{};
+  const Lanes k_n = batch.get(c.normal_stiffness);
+  const Lanes k_t = Law::tangential_stiffness(batch.get(c.tangential_stiffness), opening);
+  Carried<dim> carried;
+  carried.trial = batch.column(chunk.trial);
+  carried.slip = batch.column(chunk.slip);
+  if constexpr (more)
+    carried.moment = batch.column(chunk.carried_moment);
 
   Lanes F_n = Law::normal_force(k_n, opening); // N
   LaneVector<shears> F_T = carried.trial;
@@ -183,7 +220,7 @@ KERF_INLINE void update(ContactView<dim>& c, std::size_t k) {
   [[maybe_unused]] LaneVector<shears> M;
   [[maybe_unused]] Lanes lost_moment{};
   if constexpr (more) {
-    MomentLaw<dim> law(batch, m, carried.moment,
+    MomentLaw<dim> law(batch, carried.moment,
                        Law::tangential_stiffness(batch.get(c.bending_stiffness), opening));
     const Lanes lever = batch.get(c.bond_lever);
     tension += lever * square_root(law.bending2);
@@ -192,26 +229,29 @@ KERF_INLINE void update(ContactView<dim>& c, std::size_t k) {
     const Mask breaking = bonded & ((tension > R_n) | (shear2 > R_t * R_t));
     const Mask free = ~bonded | breaking;
     if (any(free))
-      lost_moment = law.release(batch, m, carried.moment, free, select(F_n < 0.0, F_n, Lanes{}));
+      lost_moment = law.release(batch, n, carried.moment, free, select(F_n < 0.0, F_n, Lanes{}));
     M = law.moment;
   }
   const Mask breaks = bonded & ((tension > R_n) | (shear2 > R_t * R_t)); // eqs 14, 15
   const Mask free = ~bonded | breaks;
-  const Lanes weight = batch.get(c.weight);
+  const Lanes weight = batch.only_contacts(batch.get(c.weight));
   [[maybe_unused]] Mask slides{};
 
   if (any(free)) {
     F_n = select(free & (F_n > 0.0), Lanes{}, F_n);
-    const Lanes limit = c.friction * absolute(F_n);
-    const Lanes size = square_root(trial_T2);
-    slides = free & (size > limit);
-    F_T = scaled(select(slides, limit / size, broadcast(1.0)), F_T);
-
-    // Work of a spring that gives way: mean force times the slip that is not elastic.
-    const LaneVector<shears> twice_mean =
-        sum(sum(carried.trial, -k_t, carried.slip), broadcast(1.0), F_T);
-    const Lanes lost_T = 0.5 * dot(twice_mean, sum(carried.trial, broadcast(-1.0), F_T)) / k_t;
-    const Lanes lost = weight * (select(slides & (k_t > 0.0), lost_T, Lanes{}) + lost_moment);
+    const Lanes limit = batch.get(c.friction) * absolute(F_n);
+    slides = free & (trial_T2 > limit * limit);
+    Lanes lost{};
+    if (any(slides)) {
+      F_T = scaled(select(slides, limit * inverse_square_root(trial_T2), broadcast(1.0)), F_T);
+      // Work of a spring that gives way: mean force times the slip that is not elastic.
+      const LaneVector<shears> twice_mean =
+          sum(sum(carried.trial, -k_t, carried.slip), broadcast(1.0), F_T);
+      const Lanes lost_T =
+          0.5 * dot(twice_mean, sum(carried.trial, broadcast(-1.0), F_T)) * inverse(k_t);
+      lost = select(slides & (k_t > 0.0), lost_T, Lanes{});
+    }
+    lost = weight * (lost + lost_moment);
     c.friction_loss += total(select(~breaks, lost, Lanes{}));
     if (any(breaks)) {
       const Lanes before_n = batch.get(c.normal_force);
@@ -219,9 +259,9 @@ KERF_INLINE void update(ContactView<dim>& c, std::size_t k) {
       c.fracture_loss += total(select(breaks, released, Lanes{}));
       for (int l = 0; l < width; ++l)
         if (breaks[l] != 0) {
-          const std::size_t at = k + static_cast<std::size_t>(l);
-          c.bonded[at] = 0;
-          c.on_break(c.breaks, static_cast<std::uint32_t>(at),
+          const std::size_t k = batch.k + static_cast<std::size_t>(l);
+          c.bonded[k] = 0;
+          c.on_break(c.breaks, static_cast<std::uint32_t>(k),
                      tension[l] > R_n[l] ? BreakMode::tension : BreakMode::shear, released[l]);
         }
     }
@@ -239,7 +279,7 @@ KERF_INLINE void update(ContactView<dim>& c, std::size_t k) {
     const Mask carries = pressed | (bonded & ~breaks);
     const Lanes c_n = Law::viscosity(batch.get(c.normal_viscosity), opening);
     const Lanes c_t = Law::viscosity(batch.get(c.tangential_viscosity), opening);
-    const Lanes approach = dot(m.moved, n);
+    const Lanes approach = dot(scaled(broadcast(c.scale), batch.column(chunk.moved)), n);
     const Lanes viscous_n = select(carries, c.rate * c_n * approach, Lanes{});
     const LaneVector<shears> viscous_T =
         scaled(select(carries & ~slides, c.rate * c_t, Lanes{}), carried.slip);
@@ -249,25 +289,84 @@ KERF_INLINE void update(ContactView<dim>& c, std::size_t k) {
   }
   F_n *= weight;
   F_T = scaled(weight, F_T);
+  LaneVector<dim> F;
+  LaneVector<shears> couple;
   if constexpr (dim == 2) { // F_T acts along (-n_y, n_x); F_n has no arm
-    const LaneVector<2> F = {{F_n * n[0] - F_T[0] * n[1], F_n * n[1] + F_T[0] * n[0]}};
-    scatter(batch, F, length * F_T[0], m.share);
+    F = {{F_n * n[0] - F_T[0] * n[1], F_n * n[1] + F_T[0] * n[0]}};
+    couple[0] = length * F_T[0];
   } else {
-    scatter(batch, sum(F_T, F_n, n), cross(m.branch, F_T), m.share); // eq. 11
+    F = sum(F_T, F_n, n);
+    couple = scaled(length, cross(n, F_T)); // eq. 11
   }
-  if constexpr (more)
-    scatter_moment(batch, M);
+  LaneVector<shears> on_first = scaled(batch.get(c.share), couple);
+  LaneVector<shears> on_second = sum(couple, broadcast(-1.0), on_first);
+  if constexpr (more) {
+    on_first = sum(on_first, broadcast(1.0), M);
+    on_second = sum(on_second, broadcast(-1.0), M);
+  }
+  batch.set_column(chunk.force, F);
+  batch.set_column(chunk.moment_first, on_first);
+  batch.set_column(chunk.moment_second, on_second);
+}
+
+KERF_INLINE std::size_t least(std::size_t a, std::size_t b) {
+  return a < b ? a : b;
+}
+
+/// Asks for what the chunk after the next one needs, which may still be far away: its columns and
+/// the particles that its contacts come to.
+template <int dim>
+KERF_INLINE void prefetch(const ContactView<dim>& c, std::size_t begin, std::size_t end) {
+  constexpr std::size_t line = 8; // numbers
+  constexpr int row = dim == 2 ? 2 : 4, rotation = dim == 2 ? 1 : 4, load = dim == 2 ? 4 : 8;
+  const auto ask = [](const double* at) { __builtin_prefetch(at, 0, 3); };
+  for (std::size_t k = begin; k < end; k += line) {
+    for (int a = 0; a < dim; ++a)
+      ask(c.reference_branch[a] + k);
+    for (int a = 0; a < ContactView<dim>::shear_components; ++a)
+      ask(c.shear[a] + k);
+    ask(c.rest_length + k);
+    ask(c.share + k);
+    ask(c.normal_force + k);
+  }
+  for (std::size_t k = begin; k < end; ++k) {
+    const std::size_t j = c.second[k];
+    ask(c.displacement + row * j);
+    ask(c.translation + row * j);
+    ask(c.rotation + rotation * j);
+    ask(c.loads + load * c.target[k]);
+  }
+}
+
+/// Contacts begin to end of one block: all of them bonds at the start, or none.
+template <int dim, class Law, bool more, bool bonds>
+KERF_INLINE void compute_all(ContactView<dim>& c, std::size_t begin, std::size_t end) {
+  Chunk<dim> chunk;
+  for (std::size_t k = begin; k < end; k += chunk_size) {
+    chunk.start(c, k, end);
+    prefetch(c, least(end, k + 2 * chunk_size), least(end, k + 3 * chunk_size));
+    gather_difference(chunk, c.displacement, chunk.relative);
+    for_batches(c, chunk, [&](auto batch) KERF_LAMBDA { find_opening<dim, bonds>(batch, chunk); });
+    if (!bonds && all_apart(c, chunk))
+      continue;
+    gather_difference(chunk, c.translation, chunk.moved);
+    gather_rotation(chunk, c.rotation, chunk.first, chunk.turn_first);
+    gather_rotation(chunk, c.rotation, chunk.second, chunk.turn_second);
+    for_batches(c, chunk,
+                [&](auto batch) KERF_LAMBDA { carry_history<dim, Law, more>(batch, chunk); });
+    for_batches(c, chunk,
+                [&](auto batch) KERF_LAMBDA { bound<dim, Law, more, bonds>(c, batch, chunk); });
+    scatter(c, chunk);
+  }
 }
 
 } // namespace
 
 template <int dim, class Law, bool more> void contact_kernel(ContactView<dim>& view) {
   ContactView<dim> c = view; // a copy: nothing else can change its constants
-  for (std::size_t k = c.begin; k < c.end; k += width)
-    if (c.end - k >= width && !any_is(c.second + k, c.particles - 1))
-      update<dim, Law, more, true>(c, k);
-    else
-      update<dim, Law, more, false>(c, k);
+  if constexpr (Law::has_bonds)
+    compute_all<dim, Law, more, true>(c, c.begin, c.loose);
+  compute_all<dim, Law, more, false>(c, c.loose, c.end);
   view.friction_loss += c.friction_loss;
   view.fracture_loss += c.fracture_loss;
   view.viscous_loss += c.viscous_loss;

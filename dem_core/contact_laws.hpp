@@ -8,7 +8,7 @@ namespace kerf::KERF_ISA {
 /// Springs of constant stiffness: F_n = k_n u_n (Rojek (2008) eq. 12), F_T by k_t (eq. 13), and
 /// dashpots of constant viscosity.
 struct LinearLaw {
-  static constexpr bool stiffens = false;
+  static constexpr bool stiffens = false, has_bonds = true;
   KERF_INLINE static Lanes normal_force(const Lanes& k_n, const Lanes& opening) {
     return k_n * opening;
   }
@@ -22,7 +22,7 @@ struct LinearLaw {
 /// @see H. Hertz, J. reine angew. Math. 92 (1881) 156; R.D. Mindlin, J. Appl. Mech. 16 (1949) 259;
 ///      Y. Tsuji et al., Powder Technol. 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L
 struct HertzMindlinLaw {
-  static constexpr bool stiffens = true;
+  static constexpr bool stiffens = true, has_bonds = false;
   KERF_INLINE static Lanes pressed(const Lanes& opening) {
     return select(opening < 0.0, -opening, Lanes{}); // delta, m
   }

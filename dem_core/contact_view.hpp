@@ -22,30 +22,27 @@ struct ContactConstant {
 template <int dim> struct ContactView {
   static constexpr int shear_components = dim == 2 ? 1 : 3;
 
-  std::size_t begin, end; // contacts of this block
+  std::size_t begin, loose, end; // contacts of this block; bonds of the start come first
 
   // One entry a contact; see Contacts.
   const std::uint32_t *first, *second, *target;
   const double* reference_branch[dim];
   const double *rest_length, *share;
   ContactConstant normal_stiffness, tangential_stiffness, tensile_strength, shear_strength;
-  ContactConstant weight;
+  ContactConstant friction, weight;
   // Of dashpots and moments; not read by ContactLaw::linear.
   ContactConstant normal_viscosity, tangential_viscosity;
   ContactConstant bending_stiffness, twisting_stiffness, bond_lever, rolling_limit;
   std::uint8_t* bonded;
-  const std::uint8_t* bonded_at_start;
   double* normal_force;
   double* shear[shear_components];
   double* moment[shear_components];
 
-  // One row of dim (or one rotation) a particle.
-  std::uint32_t particles;
+  // A row of four (3D) or dim numbers a particle, a rotation in 2D is one.
   const double *displacement, *translation, *rotation;
-  double scale;    // of translation and rotation
-  double rate;     // of the increment, one over its time, 1/s; 0: it took none
-  double half;     // where the slip is measured: 0.5 in the middle of the increment, 0 at its end
-  double friction; // mu
+  double scale; // of translation and rotation
+  double rate;  // of the increment, one over its time, 1/s; 0: it took none
+  double half;  // where the slip is measured: 0.5 in the middle of the increment, 0 at its end
 
   double* loads; // rows of 4 (2D) or 8 (3D): force, moment
 

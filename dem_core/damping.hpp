@@ -17,7 +17,8 @@ namespace kerf::dem {
 ///                in: G.N. Pande et al. (eds), Rock Engineering (1987), and
 ///                V. Šmilauer et al., YADE documentation, doi:10.5281/zenodo.5705394
 template <class Vector>
-Vector damping_force(DampingKind kind, double alpha, const Vector& force, const Vector& velocity) {
+Vector damping_force(DampingKind kind, double alpha, const Vector& force,
+                     const std::type_identity_t<Vector>& velocity) {
   if (kind == DampingKind::nonviscous) {
     const double speed = velocity.norm();
     if (speed == 0.0)

@@ -37,7 +37,7 @@ double energy_of_moment(const Contacts<dim>& c, const Particles<dim>& particles,
 /// Half of the work of a force over the whole step, on each side of t_n.
 template <class Vector>
 void add_halves(StepWork& work, double Work::*book, const Vector& force, const Vector& before,
-                const Vector& after, double time_step) {
+                const std::type_identity_t<Vector>& after, double time_step) {
   work.before.*book += 0.5 * time_step * force.dot(before);
   work.after.*book += 0.5 * time_step * force.dot(after);
 }

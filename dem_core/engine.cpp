@@ -39,7 +39,7 @@ Engine<dim>::Engine(const Settings<dim>& settings)
       particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
                                      settings.ids)),
       boundary_(settings.boundary, particles_.reference), gravity_(settings.gravity),
-      start_rotation_(particles_.size(), Rot<dim>::Zero()) {
+      start_rotation_(particles_.size()) {
   check(material_);
   if (!gravity_.allFinite())
     throw std::invalid_argument("gravity must be finite");
@@ -167,8 +167,8 @@ template <int dim> void Engine<dim>::compute_own_forces() {
       step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0, 0.0}
                  : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_,
                                   time_step_};
-  const std::vector<Break> breaks = compute_contact_forces(
-      contacts_, particles_, increment, shear_increment_, material_.friction, loads_);
+  const std::vector<Break> breaks =
+      compute_contact_forces(contacts_, particles_, increment, shear_increment_, loads_);
   for (const Break& lost : breaks)
     cracks_.push_back(
         crack_of(lost, contacts_, particles_, step_, static_cast<double>(step_) * time_step_));

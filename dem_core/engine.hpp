@@ -113,9 +113,9 @@ private:
   std::vector<std::string> tool_names_;
   std::vector<Tool<dim>> tools_;
   std::vector<WallContacts<dim>> wall_contacts_;
-  Vec<dim> gravity_;                     // m/s²
-  double weight_work_at_start_ = 0.0;    // J
-  std::vector<Rot<dim>> start_rotation_; // made before the start, rad
+  Vec<dim> gravity_;                              // m/s²
+  double weight_work_at_start_ = 0.0;             // J
+  std::vector<Aligned<Rot<dim>>> start_rotation_; // made before the start, rad
   std::size_t bonds_at_start_ = 0;
   std::size_t renewals_ = 0;
 

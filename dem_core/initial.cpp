@@ -64,9 +64,10 @@ void for_each_selected(std::span<const InitialCondition<dim>> conditions,
 } // namespace
 
 template <int dim>
-std::vector<Rot<dim>> apply_initial_displacements(std::span<const InitialCondition<dim>> conditions,
-                                                  Particles<dim>& particles) {
-  std::vector<Rot<dim>> rotation(particles.size(), Rot<dim>::Zero());
+std::vector<Aligned<Rot<dim>>>
+apply_initial_displacements(std::span<const InitialCondition<dim>> conditions,
+                            Particles<dim>& particles) {
+  std::vector<Aligned<Rot<dim>>> rotation(particles.size());
   for_each_selected<dim>(conditions, particles, [&](const auto& condition, std::size_t i) {
     if (!condition.pulse)
       return;
@@ -95,7 +96,7 @@ void apply_initial_velocities(std::span<const InitialCondition<dim>> conditions,
 }
 
 #define KERF_INSTANTIATE(dim)                                                                      \
-  template std::vector<Rot<dim>> apply_initial_displacements<dim>(                                 \
+  template std::vector<Aligned<Rot<dim>>> apply_initial_displacements<dim>(                        \
       std::span<const InitialCondition<dim>>, Particles<dim>&);                                    \
   template void apply_initial_velocities<dim>(std::span<const InitialCondition<dim>>, double,      \
                                               Particles<dim>&);

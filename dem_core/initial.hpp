@@ -14,8 +14,9 @@ namespace kerf::dem {
 ///
 /// @return [n] rotation that each particle has made from its reference, rad
 template <int dim>
-std::vector<Rot<dim>> apply_initial_displacements(std::span<const InitialCondition<dim>> conditions,
-                                                  Particles<dim>& particles);
+std::vector<Aligned<Rot<dim>>>
+apply_initial_displacements(std::span<const InitialCondition<dim>> conditions,
+                            Particles<dim>& particles);
 
 /// Adds the initial velocities v^0 and angular velocities.
 ///

@@ -234,7 +234,7 @@ std::vector<Pair> find_pairs(std::span<const Vec<dim>> position, std::span<const
   return sorted(found, position.size());
 }
 
-template <int dim> bool Skin<dim>::is_worn(std::span<const Vec<dim>> displacement) {
+template <int dim> bool Skin<dim>::is_worn(std::span<const Aligned<Vec<dim>>> displacement) {
   if (bound_ <= 0.5 * width_)
     return false;
   double farthest2 = 0.0; // m²

@@ -1,7 +1,7 @@
 // Which particles are close enough to touch before the list is made again.
 #pragma once
 
-#include "common/vec.hpp"
+#include "dem_core/particles.hpp"
 
 #include <compare>
 #include <cstdint>
@@ -32,7 +32,7 @@ public:
   Skin() = default;
   /// @param width         gap up to which the list holds pairs, m
   /// @param displacement  [n] when the list was made, m
-  Skin(double width, std::span<const Vec<dim>> displacement)
+  Skin(double width, std::span<const Aligned<Vec<dim>>> displacement)
       : width_(width), displacement_(displacement.begin(), displacement.end()) {}
 
   double width() const noexcept { return width_; }
@@ -40,7 +40,7 @@ public:
   void wear(double farthest) noexcept { bound_ += farthest; }
   /// True as soon as one particle has moved by more than half the width. The steps add up to a
   /// bound that spares looking at all particles as long as it is small.
-  bool is_worn(std::span<const Vec<dim>> displacement);
+  bool is_worn(std::span<const Aligned<Vec<dim>>> displacement);
 
 private:
   double width_ = 0.0;

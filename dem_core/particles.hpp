@@ -21,6 +21,19 @@ inline double bounded_share(double weight) {
   return std::clamp(weight, least_share, 1.0);
 }
 
+/// A vector in an aligned row of its own, as the kernels load it: in 3D a fourth number fills it.
+template <class Vector> struct Aligned : Vector {
+  Aligned() : Vector(Vector::Zero()) {}
+  template <class Other> Aligned(const Eigen::MatrixBase<Other>& other) : Vector(other) {}
+  using Vector::operator=;
+};
+template <> struct alignas(32) Aligned<Vec<3>> : Vec<3> {
+  Aligned() : Vec<3>(Vec<3>::Zero()) {}
+  template <class Other> Aligned(const Eigen::MatrixBase<Other>& other) : Vec<3>(other) {}
+  using Vec<3>::operator=;
+  double fill = 0.0;
+};
+
 /// All arrays have one entry a particle. Positions are kept as reference + displacement, so that
 /// small displacements lose no digits; they are never wrapped into a period.
 template <int dim> struct Particles {
@@ -33,9 +46,10 @@ template <int dim> struct Particles {
   std::vector<double> mass;    // blended, kg; pi r² rho or 4/3 pi r³ rho
   std::vector<double> inertia; // blended, kg m²; m r² / 2 or 2/5 m r²
 
-  std::vector<Vec<dim>> displacement;     // u^n, m
-  std::vector<Vec<dim>> velocity;         // v^(n-1/2), v^0 before the first step, m/s
-  std::vector<Rot<dim>> angular_velocity; // omega^(n-1/2), omega^0 before the first step, rad/s
+  std::vector<Aligned<Vec<dim>>> displacement; // u^n, m
+  std::vector<Aligned<Vec<dim>>> velocity;     // v^(n-1/2), v^0 before the first step, m/s
+  std::vector<Aligned<Rot<dim>>>
+      angular_velocity; // omega^(n-1/2), omega^0 before the first step, rad/s
 
   std::size_t size() const noexcept { return radius.size(); }
   Vec<dim> position(std::size_t i) const { return reference[i] + displacement[i]; }

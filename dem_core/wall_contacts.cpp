@@ -91,8 +91,8 @@ WallContacts<dim>::WallContacts(const WallMaterial& material, const Tool<dim>& t
       extent_ = std::max(extent_, (vertex - tool.pose().start).norm());
   }
   renew(tool, particles);
-  const std::vector<Vec<dim>> at_rest(particles.size(), Vec<dim>::Zero());
-  const std::vector<Rot<dim>> no_rotation(particles.size(), Rot<dim>::Zero());
+  const std::vector<Aligned<Vec<dim>>> at_rest(particles.size());
+  const std::vector<Aligned<Rot<dim>>> no_rotation(particles.size());
   const Increment<dim> nothing{at_rest, no_rotation, 1.0};
   Loads<dim> none;
   none.own.resize(particles.size());

@@ -85,8 +85,10 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
   const auto weight =
       of_particles([&](std::uint32_t i) { return p.weight.empty() ? 1.0 : p.weight[i]; });
   const auto radius = from(p.radius), mass = from(p.mass);
-  const auto displacement = from(p.displacement), velocity = from(p.velocity);
-  const auto angular_velocity = from(p.angular_velocity);
+  const auto displacement = of_particles([&](auto i) -> Vec<dim> { return p.displacement[i]; });
+  const auto velocity = of_particles([&](auto i) -> Vec<dim> { return p.velocity[i]; });
+  const auto angular_velocity =
+      of_particles([&](auto i) -> Rot<dim> { return p.angular_velocity[i]; });
 
   const auto fragment =
       of_particles([&](std::uint32_t i) { return std::int64_t{fragments.of[i]}; });

@@ -118,14 +118,14 @@ template <int dim> Eigen::MatrixXd scaled_stiffness(const dem::Engine<dim>& engi
   const auto response = [&](std::size_t i, int a, double size_of_move) {
     auto particles = engine.particles();
     auto contacts = engine.contacts();
-    std::vector<Rot<dim>> rotation(n, Rot<dim>::Zero());
+    std::vector<dem::Aligned<Rot<dim>>> rotation(n);
     if (a < dim)
       particles.displacement[i][a] = size_of_move;
     else
       rotation[i][a - dim] = size_of_move;
     dem::Loads<dim> loads;
     dem::compute_contact_forces(contacts, particles, {particles.displacement, rotation, 1.0},
-                                dem::ShearIncrement::midpoint, 0.0, loads);
+                                dem::ShearIncrement::midpoint, loads);
     Eigen::VectorXd all(size);
     for (std::size_t j = 0; j < n; ++j)
       all.segment<dofs>(static_cast<Eigen::Index>(j) * dofs) << loads.own[j].force,

@@ -14,7 +14,7 @@ constexpr double k_n = 1e10, k_t = 2e9; // of rock(2), N/m
 /// One contact along x whose second particle is moved by hand.
 class Contact {
 public:
-  explicit Contact(const dem::Material& material, double gap = 0.0) : friction_(material.friction) {
+  explicit Contact(const dem::Material& material, double gap = 0.0) {
     auto settings = cases::pair_model<2>({1.0, 0.0}, material);
     settings.positions[1][0] += gap;
     settings.gap_tolerance = 1e-2;
@@ -23,11 +23,11 @@ public:
     contacts_ = engine.contacts();
   }
   void move(const Vec<2>& by) {
-    const std::vector<Vec<2>> translation = {Vec<2>::Zero(), by};
-    const std::vector<Rot<2>> rotation(2, Rot<2>::Zero());
+    const std::vector<dem::Aligned<Vec<2>>> translation = {Vec<2>::Zero(), by};
+    const std::vector<dem::Aligned<Rot<2>>> rotation(2);
     particles_.displacement[1] += by;
     dem::compute_contact_forces(contacts_, particles_, {translation, rotation, 1.0},
-                                dem::ShearIncrement::midpoint, friction_, loads_);
+                                dem::ShearIncrement::midpoint, loads_);
   }
   void set_weight(double weight) { contacts_.weight.set_all(weight); }
   bool bonded() const { return contacts_.bonded[0]; }
@@ -37,7 +37,6 @@ public:
   double force() const { return loads_.own[0].force.norm(); }
 
 private:
-  double friction_;
   dem::Particles<2> particles_;
   dem::Contacts<2> contacts_;
   dem::Loads<2> loads_;

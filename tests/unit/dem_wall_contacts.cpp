@@ -95,8 +95,8 @@ template <int dim> void shear_turns_with_the_tool() {
 
   const double dt = 1e-3;
   const Vec<dim> slip = Vec<dim>::UnitY() * 1e-6;
-  std::vector<Vec<dim>> moved = {slip};
-  std::vector<Rot<dim>> turned = {Rot<dim>::Zero()};
+  std::vector<dem::Aligned<Vec<dim>>> moved = {slip};
+  std::vector<dem::Aligned<Rot<dim>>> turned(1);
   particles.displacement[0] = slip;
   tool.begin_step(0, dt);
   contacts.compute(tool, particles, {moved, turned, 1.0}, 0.0, loads);

@@ -25,10 +25,10 @@ Matrix<dim> stress(const dem::Engine<dim>& engine, const Matrix<dim>& strain,
   auto contacts = engine.contacts();
   for (std::size_t i = 0; i < particles.size(); ++i)
     particles.displacement[i] = strain * particles.reference[i];
-  const std::vector<Rot<dim>> no_rotation(particles.size(), Rot<dim>::Zero());
+  const std::vector<dem::Aligned<Rot<dim>>> no_rotation(particles.size());
   dem::Loads<dim> loads;
   dem::compute_contact_forces(contacts, particles, {particles.displacement, no_rotation, 1.0},
-                              dem::ShearIncrement::midpoint, 0.0, loads);
+                              dem::ShearIncrement::midpoint, loads);
   Matrix<dim> sum = Matrix<dim>::Zero();
   std::size_t count = 0;
   for (const Vec<dim>& x : particles.reference)

@@ -80,13 +80,13 @@ template <int dim> void rigid_rotation_carries_forces_along(const Rot<dim>& axis
   const std::size_t n = p.size();
 
   // A start state with shear in every contact.
-  std::vector<Vec<dim>> move(n);
-  std::vector<Rot<dim>> turn(n, Rot<dim>::Zero());
+  std::vector<dem::Aligned<Vec<dim>>> move(n);
+  std::vector<dem::Aligned<Rot<dim>>> turn(n);
   for (std::size_t i = 0; i < n; ++i)
     for (int a = 0; a < dim; ++a)
       move[i][a] = 1e-3 * spacing * std::sin(static_cast<double>(7 * i) + 3.0 * a);
   p.displacement = move;
-  dem::compute_contact_forces(c, p, {move, turn, 1.0}, dem::ShearIncrement::midpoint, 0.0, loads);
+  dem::compute_contact_forces(c, p, {move, turn, 1.0}, dem::ShearIncrement::midpoint, loads);
   const auto start = c;
   const auto from = p;
 
@@ -105,7 +105,7 @@ template <int dim> void rigid_rotation_carries_forces_along(const Rot<dim>& axis
       move[i] = p.displacement[i] - before;
       turn[i] = step * axis;
     }
-    dem::compute_contact_forces(c, p, {move, turn, 1.0}, dem::ShearIncrement::midpoint, 0.0, loads);
+    dem::compute_contact_forces(c, p, {move, turn, 1.0}, dem::ShearIncrement::midpoint, loads);
   }
   for (std::size_t k = 0; k < c.size(); ++k) {
     if (!c.bonded[k])

@@ -27,10 +27,10 @@ template <int dim> struct Deformed {
     contacts = engine.contacts();
     for (std::size_t i = 0; i < particles.size(); ++i)
       particles.displacement[i] = gradient * particles.reference[i];
-    const std::vector<Rot<dim>> no_rotation(particles.size(), Rot<dim>::Zero());
+    const std::vector<dem::Aligned<Rot<dim>>> no_rotation(particles.size());
     dem::Loads<dim> loads;
     dem::compute_contact_forces(contacts, particles, {particles.displacement, no_rotation, 1.0},
-                                dem::ShearIncrement::midpoint, 0.0, loads);
+                                dem::ShearIncrement::midpoint, loads);
   }
 };
 

@@ -1,0 +1,276 @@
+// The list of contacts: which pairs it holds, in which order, and how it is made again.
+#include "dem_core/contact.hpp"
+#include "dem_core/contact_constants.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace kerf::dem {
+
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// Of two centres at the start, over the sum of the radii. Irregular packings of bonded rock
+/// overlap a little, which their bonds forget; more is a mistake of the user.
+constexpr double least_distance = 0.5;
+
+/// A contact to be, and the one of the old list that it continues.
+struct Entry {
+  Pair pair;
+  std::uint32_t old = none;
+};
+
+/// The contacts that a block is to have, in the order of the list.
+struct BlockList {
+  std::vector<Entry> bonds, touching, apart;
+  std::uint32_t waiting = 0; // of them, with a second particle in another block
+
+  std::size_t size() const { return bonds.size() + touching.size() + apart.size(); }
+};
+
+std::size_t block_of(std::uint32_t particle) {
+  return particle / particles_per_block;
+}
+
+template <int dim>
+std::vector<Pair> pairs_within(const Particles<dim>& particles, double reach,
+                               const Period<dim>& period) {
+  std::vector<Vec<dim>> position(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    position[i] = particles.position(i);
+  return find_pairs<dim>(position, particles.radius, reach, period);
+}
+
+/// Calls fill(list, pairs of the block) for every block.
+template <class Fill>
+std::vector<BlockList> make_lists(std::size_t particles, std::span<const Pair> pairs, Fill fill) {
+  std::vector<BlockList> lists((particles + particles_per_block - 1) / particles_per_block);
+  const auto from = [&](std::size_t block) {
+    const Pair least{static_cast<std::uint32_t>(block * particles_per_block), 0};
+    return std::lower_bound(pairs.begin(), pairs.end(), least);
+  };
+  const auto blocks = static_cast<std::int64_t>(lists.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t b = 0; b < blocks; ++b) {
+    fill(b, lists[b], std::span(from(b), from(b + 1)));
+    for (const auto* part : {&lists[b].bonds, &lists[b].touching, &lists[b].apart})
+      for (const Entry& entry : *part)
+        lists[b].waiting += block_of(entry.pair.second) != static_cast<std::size_t>(b);
+  }
+  return lists;
+}
+
+template <int dim> void resize(Contacts<dim>& c, std::size_t count) {
+  c.first.resize(count);
+  c.second.resize(count);
+  c.target.resize(count);
+  c.reference_branch.resize(count);
+  c.rest_length.resize(count);
+  c.share.resize(count);
+  c.bonded.resize(count);
+  c.normal_force.resize(count);
+  c.shear_force.resize(count);
+  if (c.law != ContactLaw::linear)
+    c.moment.resize(count);
+}
+
+/// A pair without bond or history; it is free of stress when the surfaces just touch.
+template <int dim>
+void set_new(Contacts<dim>& c, std::size_t k, Pair pair, const Particles<dim>& p,
+             const Period<dim>& period) {
+  const auto [i, j] = pair;
+  const Vec<dim> relative = p.displacement[j] - p.displacement[i];
+  c.reference_branch.set(k, period.shortest(p.reference[j] - p.reference[i] + relative) - relative);
+  c.rest_length[k] = p.radius[i] + p.radius[j];
+  c.share[k] = p.radius[i] / (p.radius[i] + p.radius[j]);
+  c.bonded[k] = 0;
+  c.normal_force[k] = 0.0;
+  c.shear_force.set(k, Rot<dim>::Zero());
+  if (c.law != ContactLaw::linear)
+    c.moment.set(k, Rot<dim>::Zero());
+}
+
+/// Contact `old` of another list with all its history.
+template <int dim>
+void set_copy(Contacts<dim>& c, std::size_t k, const Contacts<dim>& from, std::size_t old) {
+  c.reference_branch.set(k, from.reference_branch[old]);
+  c.rest_length[k] = from.rest_length[old];
+  c.share[k] = from.share[old];
+  c.bonded[k] = from.bonded[old];
+  c.normal_force[k] = from.normal_force[old];
+  c.shear_force.set(k, from.shear_force[old]);
+  if (c.law != ContactLaw::linear)
+    c.moment.set(k, from.moment[old]);
+}
+
+/// Which block owns what, and where loads wait; the contacts themselves are still to be filled.
+template <int dim>
+void set_blocks(Contacts<dim>& c, std::span<const BlockList> lists, std::size_t particles) {
+  c.block_offset.assign(1, 0);
+  c.loose_offset.clear();
+  c.waiting_offset.assign(1, static_cast<std::uint32_t>(particles));
+  for (const BlockList& list : lists) {
+    const std::uint32_t begin = c.block_offset.back();
+    c.loose_offset.push_back(begin + static_cast<std::uint32_t>(list.bonds.size()));
+    c.block_offset.push_back(begin + static_cast<std::uint32_t>(list.size()));
+    c.waiting_offset.push_back(c.waiting_offset.back() + list.waiting);
+  }
+  c.losses.resize(lists.size());
+  resize(c, c.block_offset.back());
+}
+
+/// What the blocks receive from one another, in the order of the contacts.
+template <int dim> void set_incoming(Contacts<dim>& c) {
+  c.incoming_offset.assign(c.blocks() + 1, 0);
+  for (std::size_t k = 0; k < c.size(); ++k)
+    if (c.target[k] != c.second[k])
+      ++c.incoming_offset[block_of(c.second[k]) + 1];
+  std::partial_sum(c.incoming_offset.begin(), c.incoming_offset.end(), c.incoming_offset.begin());
+  c.incoming_row.resize(c.incoming_offset.back());
+  c.incoming_second.resize(c.incoming_offset.back());
+  std::vector<std::uint32_t> next(c.incoming_offset.begin(), c.incoming_offset.end() - 1);
+  for (std::size_t k = 0; k < c.size(); ++k)
+    if (c.target[k] != c.second[k]) {
+      const std::uint32_t at = next[block_of(c.second[k])]++;
+      c.incoming_row[at] = c.target[k];
+      c.incoming_second[at] = c.second[k];
+    }
+}
+
+/// Fills a list; set(k, entry) gives contact k all but its place.
+template <int dim, class Set>
+void fill(Contacts<dim>& c, std::span<const BlockList> lists, std::size_t particles, Set set) {
+  set_blocks(c, lists, particles);
+  const auto blocks = static_cast<std::int64_t>(lists.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t b = 0; b < blocks; ++b) {
+    std::uint32_t k = c.block_offset[b], row = c.waiting_offset[b];
+    for (const auto* part : {&lists[b].bonds, &lists[b].touching, &lists[b].apart})
+      for (const Entry& entry : *part) {
+        const auto [i, j] = entry.pair;
+        c.first[k] = i;
+        c.second[k] = j;
+        c.target[k] = block_of(j) == static_cast<std::size_t>(b) ? j : row++;
+        set(k++, entry);
+      }
+  }
+  set_incoming(c);
+}
+
+/// The contacts of a block in ascending order of their pairs.
+template <int dim> std::vector<std::uint32_t> ascending(const Contacts<dim>& c, std::size_t block) {
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    return Pair{c.first[a], c.second[a]} < Pair{c.first[b], c.second[b]};
+  };
+  std::vector<std::uint32_t> order(c.block_offset[block + 1] - c.block_offset[block]);
+  std::iota(order.begin(), order.end(), c.block_offset[block]);
+  // Three ascending parts: bonds of the start, then what touched and what was apart.
+  const auto loose = order.begin() + (c.loose_offset[block] - c.block_offset[block]);
+  std::inplace_merge(loose, std::is_sorted_until(loose, order.end(), less), order.end(), less);
+  std::inplace_merge(order.begin(), loose, order.end(), less);
+  return order;
+}
+
+} // namespace
+
+template <int dim>
+Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
+                            std::optional<double> gap_tolerance, double skin,
+                            const Period<dim>& period) {
+  const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
+  const double reach = std::max(skin, gap_tolerance.value_or(0.0) * 2.0 * largest);
+  const std::vector<Pair> pairs = pairs_within(particles, reach, period);
+  const auto distance_of = [&](Pair pair) {
+    return period.shortest(particles.reference[pair.second] - particles.reference[pair.first])
+        .norm();
+  };
+  for (const Pair pair : pairs) {
+    const auto [i, j] = pair;
+    const double contact_distance = particles.radius[i] + particles.radius[j];
+    if (const double distance = distance_of(pair); distance < least_distance * contact_distance)
+      throw std::invalid_argument(fmt::format(
+          "the centres of particles {} and {} are {:.6g} m apart, less than half of the sum of "
+          "their radii, {:.6g} m: they overlap too much",
+          particles.ids[i], particles.ids[j], distance, contact_distance));
+  }
+  const auto lists =
+      make_lists(particles.size(), pairs,
+                 [&](std::size_t /*block*/, BlockList& list, std::span<const Pair> of_block) {
+                   for (const Pair pair : of_block) {
+                     const double contact_distance =
+                         particles.radius[pair.first] + particles.radius[pair.second];
+                     const double gap = distance_of(pair) - contact_distance;
+                     if (gap_tolerance && gap <= *gap_tolerance * contact_distance)
+                       list.bonds.push_back({pair});
+                     else if (gap <= skin)
+                       (gap < 0.0 ? list.touching : list.apart).push_back({pair});
+                   }
+                 });
+  Contacts<dim> c;
+  c.law = law_of(material);
+  fill(c, lists, particles.size(),
+       [&](std::size_t k, const Entry& entry) { set_new(c, k, entry.pair, particles, period); });
+  for (std::size_t k = 0; k < c.size(); ++k)
+    if (c.bonded_at_start(k)) {
+      c.bonded[k] = 1;
+      c.rest_length[k] = c.reference_branch[k].norm();
+    }
+  c.weight.set_all(1.0);
+  set_constants(c, particles, material);
+  return c;
+}
+
+template <int dim>
+void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
+                    const Material& material, double skin, const Period<dim>& period) {
+  const std::vector<Pair> pairs = pairs_within(particles, skin, period);
+  const auto lists = make_lists(
+      particles.size(), pairs,
+      [&](std::size_t block, BlockList& list, std::span<const Pair> of_block) {
+        auto pair = of_block.begin();
+        for (const std::uint32_t k : ascending(contacts, block)) {
+          const Pair old{contacts.first[k], contacts.second[k]};
+          for (; pair != of_block.end() && *pair < old; ++pair)
+            list.apart.push_back({*pair});
+          const bool is_near = pair != of_block.end() && *pair == old;
+          if (is_near)
+            ++pair;
+          if (contacts.bonded_at_start(k))
+            list.bonds.push_back({old, k});
+          else if (is_near)
+            (contacts.normal_force[k] != 0.0 ? list.touching : list.apart).push_back({old, k});
+        }
+        for (; pair != of_block.end(); ++pair)
+          list.apart.push_back({*pair});
+      });
+  Contacts<dim> renewed;
+  renewed.law = contacts.law;
+  fill(renewed, lists, particles.size(), [&](std::size_t k, const Entry& entry) {
+    if (entry.old == none)
+      set_new(renewed, k, entry.pair, particles, period);
+    else
+      set_copy(renewed, k, contacts, entry.old);
+  });
+  renewed.losses = contacts.losses;
+  set_constants(renewed, particles, material);
+  renewed.weight.set_all(1.0);
+  if (!contacts.weight.is_uniform())
+    blend(renewed, particles);
+  contacts = std::move(renewed);
+}
+
+template Contacts<2> make_contacts<2>(const Particles<2>&, const Material&, std::optional<double>,
+                                      double, const Period<2>&);
+template Contacts<3> make_contacts<3>(const Particles<3>&, const Material&, std::optional<double>,
+                                      double, const Period<3>&);
+template void renew_contacts<2>(Contacts<2>&, const Particles<2>&, const Material&, double,
+                                const Period<2>&);
+template void renew_contacts<3>(Contacts<3>&, const Particles<3>&, const Material&, double,
+                                const Period<3>&);
+
+} // namespace kerf::dem
