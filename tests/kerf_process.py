@@ -6,11 +6,15 @@ import pathlib
 import re
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "verification"))
+from report import report
+
 CONFIGS = ROOT / "configs"
 PROGRAMS = pathlib.Path(os.environ["KERF_PROGRAMS"])  # folder of kerf, kerf-dem, kerf-fem
 
@@ -39,6 +43,13 @@ class KerfTest(unittest.TestCase):
         result = self.kerf("run", case, "--out", folder, *arguments, timeout=timeout)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return folder
+
+    def verify(self, what, source, error, tolerance, reason):
+        """Expects |error| <= tolerance, and reports both for docs/verification.md."""
+        file = pathlib.Path(sys.modules[type(self).__module__].__file__).resolve().relative_to(ROOT)
+        report(file, what, source, error, tolerance, reason)
+        print(f"{what}: {error:.2e} of {tolerance:g}")
+        self.assertLessEqual(abs(error), tolerance, what)
 
     def start(self, case, *arguments, out="run"):
         """Starts a run and waits until its steps are under way. -> Run"""

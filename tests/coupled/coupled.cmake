@@ -1,8 +1,9 @@
 # Coupled runs: the physics in one process, then whole runs of the program.
 add_executable(coupled_tests verification/coupled_chain.cpp)
 target_link_libraries(coupled_tests PRIVATE kerf::broker kerf::dem kerf::fem kerf::warnings
-                                            GTest::gtest_main)
-gtest_discover_tests(coupled_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
+                                            fmt::fmt GTest::gtest_main)
+kerf_verification(coupled_tests)
+gtest_discover_tests(coupled_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${KERF_VERIFIES})
 
 add_executable(loopback_tests coupled/loopback.cpp)
 target_link_libraries(loopback_tests PRIVATE kerf::commands kerf::dem_participant
@@ -13,23 +14,24 @@ target_compile_definitions(loopback_tests PRIVATE KERF_CONFIGS="${CMAKE_SOURCE_D
 gtest_discover_tests(loopback_tests)
 
 # The cases are their own tests: they exit with 1 when an expectation is not met.
+function(kerf_case name case) # and settings
+  add_test(NAME case.${name}
+           COMMAND ${KERF_PYTHON} ${CMAKE_SOURCE_DIR}/tests/cases/expectations.py
+                   ${CMAKE_SOURCE_DIR}/configs/${case}.toml
+                   ${CMAKE_CURRENT_BINARY_DIR}/runs/${name} ${ARGN})
+  set_tests_properties(
+    case.${name} PROPERTIES ${KERF_VERIFIES} ENVIRONMENT
+    "KERF_PROGRAMS=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};KERF_TEST=case.${name};PYTHONDONTWRITEBYTECODE=1")
+endfunction()
 foreach(case wave_chain wave_bar wave_block)
-  add_test(NAME case.${case}
-           COMMAND kerf_program run ${CMAKE_SOURCE_DIR}/configs/${case}.toml --out
-                   ${CMAKE_CURRENT_BINARY_DIR}/runs/${case})
+  kerf_case(${case} ${case})
 endforeach()
 
 # Variants of the chain: what they may reflect, from an independent study of chains (see
 # docs/theory/coupling.md).
 function(kerf_chain_variant name least most)
-  set(arguments --set measures.reflected_energy.expect.min=${least}
-                --set measures.reflected_energy.expect.max=${most})
-  foreach(setting ${ARGN})
-    list(APPEND arguments --set ${setting})
-  endforeach()
-  add_test(NAME case.wave_chain.${name}
-           COMMAND kerf_program run ${CMAKE_SOURCE_DIR}/configs/wave_chain.toml --out
-                   ${CMAKE_CURRENT_BINARY_DIR}/runs/wave_chain_${name} ${arguments})
+  kerf_case(wave_chain.${name} wave_chain measures.reflected_energy.expect.min=${least}
+            measures.reflected_energy.expect.max=${most} ${ARGN})
 endfunction()
 set(penalty couplings.joint.method=penalty measures.constraint_violation.expect.max=1e-6)
 kerf_chain_variant(elements_of_two_spacings 0 5e-4 "participants.bar.mesh.count=[60, 1]"

@@ -1,9 +1,15 @@
 # kerf against YADE and FEniCSx.
 kerf_python_test(reference.yade reference/wave.py
-                 Wave.test_a_wave_in_a_bonded_lattice_is_that_of_yade reference)
+                 Wave.test_a_wave_in_a_bonded_lattice_is_that_of_yade reference verification)
 kerf_python_test(reference.fenicsx reference/wave.py
-                 Wave.test_a_pulse_in_a_bar_of_quadrilaterals_is_that_of_fenicsx reference)
+                 Wave.test_a_pulse_in_a_bar_of_quadrilaterals_is_that_of_fenicsx reference
+                 verification)
 kerf_python_test(reference.yade_motion reference/block.py
-                 Block.test_until_a_bond_breaks_the_motion_is_that_of_yade reference)
+                 Block.test_until_a_bond_breaks_the_motion_is_that_of_yade reference verification)
 kerf_python_test(reference.yade_breakage reference/block.py
-                 Block.test_the_block_breaks_like_that_of_yade reference)
+                 Block.test_the_block_breaks_like_that_of_yade reference verification)
+kerf_python_test(reference.yade_pair reference/pair.py Pair reference verification)
+kerf_python_test(reference.yade_column reference/grains.py Grains.test_a_column_that_settles
+                 reference verification)
+kerf_python_test(reference.yade_tool reference/grains.py
+                 Grains.test_a_plate_that_is_dragged_through_a_bed reference verification)

@@ -12,18 +12,22 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_wall_contacts.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_beam.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_contact_laws.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_critical_step.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_impact.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_stress.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_walls.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_walls.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_waves.cpp)
 target_link_libraries(dem_tests PRIVATE kerf::dem kerf::dem_participant kerf::warnings fmt::fmt
                                         OpenMP::OpenMP_CXX GTest::gtest_main)
 # Threads that spin between two tiny loops cost more than the loops.
-gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
+kerf_verification(dem_tests)
+gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${KERF_VERIFIES})
 
 kerf_python_test(case.tools verification/tools.py Tools)

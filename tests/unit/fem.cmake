@@ -8,4 +8,5 @@ add_executable(fem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/fem_waves.cpp)
 target_link_libraries(fem_tests PRIVATE kerf::fem kerf::fem_participant kerf::channel kerf::common
   nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX kerf::warnings GTest::gtest_main)
-gtest_discover_tests(fem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
+kerf_verification(fem_tests)
+gtest_discover_tests(fem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${KERF_VERIFIES})

@@ -1,5 +1,6 @@
-// The laws of a contact against closed forms: impacts, dashpots, bonds that bend and twist.
+// The laws of a contact against closed forms: bonds that bend and twist, rolling, constants.
 #include "tests/cases/dem_models.hpp"
+#include "tests/verification/verification.hpp"
 
 #include "dem_core/contact_constants.hpp"
 
@@ -16,142 +17,6 @@ using cases::spacing;
 using std::numbers::pi;
 
 constexpr double radius = 0.5 * spacing;
-
-/// Two equal spheres that are about to touch along x; the second one moves.
-template <int dim>
-dem::Settings<dim> collision(const dem::Material& material, const Vec<dim>& velocity) {
-  auto settings = cases::pair_model<dim>(Vec<dim>::UnitX(), material);
-  settings.bonds = false;
-  dem::InitialCondition<dim> condition;
-  condition.box = Box<dim>{settings.positions[1], settings.positions[1]};
-  condition.velocity = velocity;
-  settings.initial = {condition};
-  return settings;
-}
-
-/// What a collision was like.
-template <int dim> struct Impact {
-  double duration = 0.0, overlap = 0.0, force = 0.0; // s, m, N
-  Vec<dim> velocity;                                 // of the second less the first, after it
-  Rot<dim> spin;                                     // of the second, after it
-};
-template <int dim> Impact<dim> collide(const dem::Settings<dim>& settings, double dt) {
-  dem::Engine<dim> engine(settings);
-  engine.start(dt);
-  Impact<dim> impact;
-  bool touched = false;
-  for (int n = 0; n < 10000000; ++n) {
-    cases::step(engine);
-    const double force = -engine.contacts().normal_force[0];
-    if (force > 0.0) {
-      touched = true;
-      impact.duration += dt;
-      impact.force = std::max(impact.force, force);
-      const auto& p = engine.particles();
-      impact.overlap = std::max(impact.overlap, -(p.displacement[1][0] - p.displacement[0][0]));
-    } else if (touched) {
-      break;
-    }
-  }
-  const auto& p = engine.particles();
-  impact.velocity = p.velocity[1] - p.velocity[0];
-  impact.spin = p.angular_velocity[1];
-  return impact;
-}
-
-dem::Material glass() {
-  dem::Material material;
-  material.density = 2500.0;
-  material.law = dem::NormalLaw::hertz_mindlin;
-  material.young_modulus = 70e9;
-  material.poisson_ratio = 0.23;
-  return material;
-}
-
-// Reference: H. Hertz (1881): with E*, R* = r/2 and m* = m/2, the largest overlap is
-// (15 m* v² / (16 sqrt(R*) E*))^(2/5), and the impact takes 2 delta / v times the integral of
-// 1/sqrt(1 - x^(5/2)) from 0 to 1, which is 1.4716. Tolerance: 3000 steps an impact, first order at
-// its two ends.
-TEST(Hertz, impact_has_the_overlap_force_and_duration_of_the_closed_form) {
-  const dem::Material material = glass();
-  const double m = material.density * 4.0 / 3.0 * pi * std::pow(radius, 3);
-  const double E = material.young_modulus / (2.0 * (1.0 - std::pow(material.poisson_ratio, 2)));
-  const double integral = std::sqrt(pi) * std::tgamma(0.4) / (2.5 * std::tgamma(0.9));
-  for (const double v : {0.1, 5.0}) {
-    const double overlap =
-        std::pow(15.0 * 0.5 * m * v * v / (16.0 * std::sqrt(0.5 * radius) * E), 0.4);
-    const double force = 4.0 / 3.0 * E * std::sqrt(0.5 * radius) * std::pow(overlap, 1.5);
-    const double duration = 2.0 * integral * overlap / v;
-    const auto impact = collide<3>(collision<3>(material, {-v, 0.0, 0.0}), duration / 3000.0);
-    EXPECT_NEAR(impact.overlap, overlap, 1e-5 * overlap);
-    EXPECT_NEAR(impact.force, force, 1e-5 * force);
-    EXPECT_NEAR(impact.duration, duration, 1e-3 * duration);
-    EXPECT_NEAR(impact.velocity[0], v, 1e-5 * v);
-  }
-}
-
-// Reference: a spring and dashpot end with e times the velocity they began with; for spheres of
-// Hertz T. Antypov & J.A. Elliott (2011), whatever the velocity. Tolerance: the velocity of the
-// dashpot is half a step old, and the last step leaves the contact; both fall with the step.
-TEST(Dashpots, give_the_coefficient_of_restitution_at_any_velocity) {
-  for (const double e : {0.9, 0.5}) {
-    dem::Material linear = rock(3);
-    linear.restitution = e;
-    const double m = linear.density * 4.0 / 3.0 * pi * std::pow(radius, 3);
-    const double time = pi * std::sqrt(0.5 * m / linear.normal_stiffness);
-    for (const double v : {0.01, 1.0}) {
-      const auto impact = collide<3>(collision<3>(linear, {-v, 0.0, 0.0}), time / 2000.0);
-      EXPECT_NEAR(impact.velocity[0], e * v, 3e-3 * v) << "linear, e = " << e;
-    }
-    dem::Material hertz = glass();
-    hertz.restitution = e;
-    for (const double v : {0.1, 5.0}) {
-      const auto impact = collide<3>(collision<3>(hertz, {-v, 0.0, 0.0}), 1e-9);
-      EXPECT_NEAR(impact.velocity[0], e * v, 6e-3 * v) << "Hertz, e = " << e;
-    }
-  }
-}
-
-// Reference: N. Maw, J.R. Barber & J.N. Fawcett, Wear 38 (1976) 101,
-// doi:10.1016/0043-1648(76)90201-2 in its linear form: a contact that sticks swings in shear at
-// omega_t² = k_t / m* (1 + m r² / I) while it swings once at omega_n² = k_n / m*, so its tangential
-// velocity at the end is cos(pi omega_t / omega_n) of that at the start. Tolerance: 1000 steps an
-// impact; the contact turns by 1e-4.
-template <int dim> void sticks(double inertia_factor) {
-  dem::Material material = rock(dim, 0.3);
-  material.friction = 1e6;
-  const double v = 1e-3;
-  Vec<dim> velocity = Vec<dim>::Zero();
-  velocity[0] = -v;
-  velocity[1] = 0.5 * v;
-  const auto settings = collision<dim>(material, velocity);
-  const double m = dem::Engine<dim>(settings).particles().mass[0];
-  const double omega_n = std::sqrt(material.normal_stiffness / (0.5 * m));
-  const double omega_t =
-      std::sqrt(material.tangential_stiffness / (0.5 * m) * (1.0 + 1.0 / inertia_factor));
-  const auto impact = collide<dim>(settings, pi / omega_n / 1000.0);
-  // Both spheres turn alike: the surfaces move by r (omega_i + omega_j) against their centres.
-  const double after = impact.velocity[1] - 2.0 * radius * impact.spin[rotations<dim> - 1];
-  EXPECT_NEAR(after, 0.5 * v * std::cos(pi * omega_t / omega_n), 5e-3 * v);
-}
-TEST(ObliqueImpact, that_sticks_swings_in_shear_in_2D) {
-  sticks<2>(0.5);
-}
-TEST(ObliqueImpact, that_sticks_swings_in_shear_in_3D) {
-  sticks<3>(0.4);
-}
-
-// Reference: the same paper: an impact that slides all the time loses 2 mu (1 + m r² / I) v_n of
-// its tangential velocity, and gains spin 2 mu m v_n r / I on either side with v_n half the
-// approach.
-TEST(ObliqueImpact, that_slides_loses_what_friction_takes) {
-  dem::Material material = glass();
-  material.friction = 0.1;
-  const double v = 0.1;
-  const auto impact = collide<3>(collision<3>(material, {-v, 2.0 * v, 0.0}), 2e-10);
-  EXPECT_NEAR(impact.velocity[1], 2.0 * v - 2.0 * material.friction * v, 2e-3 * v);
-  EXPECT_NEAR(std::abs(impact.spin[2]) * radius, material.friction * v / 0.4, 2e-3 * v);
-}
 
 /// Two bonded particles that turn against each other, and the steps of half a swing.
 template <int dim> int steps_of_half_a_swing(const Rot<dim>& axis, double dt) {
@@ -188,55 +53,17 @@ TEST(BondWithMoments, swings_with_the_stiffness_of_its_cross_section) {
                     : 0.4 * 2600.0 * 4.0 / 3.0 * pi * std::pow(radius, 5);
   };
   const double dt = 1e-10;
-  EXPECT_NEAR(steps_of_half_a_swing<2>(Rot<2>(1.0), dt),
-              expected(1e10 * R * R / 3.0, inertia(2), dt), 2.0);
-  EXPECT_NEAR(steps_of_half_a_swing<3>(Vec<3>::UnitY(), dt),
-              expected(1e7 * R * R / 4.0, inertia(3), dt), 2.0);
-  EXPECT_NEAR(steps_of_half_a_swing<3>(Vec<3>::UnitX(), dt),
-              expected(4e6 * R * R / 2.0, inertia(3), dt), 2.0);
-}
-
-// Reference: a Timoshenko beam of n bonds with EI = k_b d and G A_s = k_t d under a force at its
-// tip. Its joints are discrete: u = P (n / k_t + d² n (4 n² - 1) / (12 k_b)), which tends to
-// P L³ / (3 EI) + P L / (G A_s). The tip is moved to and fro once in some 60 swings of the
-// beam; tolerance: the square of that, 3e-4.
-template <int dim> void bends() {
-  constexpr int bonds = 8, steps = 200000;
-  std::array<int, dim> count;
-  count.fill(1);
-  count[0] = bonds + 1;
-  auto material = rock(dim, 0.4);
-  material.bond_radius_ratio = 1.0;
-  auto settings = cases::lattice_model<dim>(dem::LatticeType::chain, count, material);
-  const double deflection = 1e-4 * bonds * spacing;
-  auto clamp = cases::prescribe_at<dim>(settings.positions.front(), dem::Motion::fixed);
-  clamp.components |= 1u << dim;
-  auto tip = cases::prescribe_at<dim>(settings.positions.back(), dem::Motion::hann);
-  tip.components = 1u << 1;
-  tip.amplitude[1] = deflection;
-  settings.boundary = {clamp, tip};
-  settings.damping = {.kind = dem::DampingKind::nonviscous, .translation = 0.3, .rotation = 0.3};
-  dem::Engine<dim> engine(settings);
-  const double dt = 0.8 * 2.0 / std::sqrt(engine.step_limit().omega2);
-  settings.boundary[1].duration = steps * dt;
-  engine = dem::Engine<dim>(settings);
-  engine.start(dt);
-  for (int n = 0; n < steps / 2; ++n)
-    cases::step(engine);
-  engine.compute_own_forces();
-  const double k_b = material.normal_stiffness * radius * radius / (dim == 2 ? 3.0 : 4.0);
-  const double compliance = bonds / material.tangential_stiffness +
-                            spacing * spacing * bonds * (4.0 * bonds * bonds - 1.0) / (12.0 * k_b);
-  for (const std::size_t k : {0, 4, 7}) {
-    const double P = dem::contact_force(engine.contacts(), engine.particles(), k)[1];
-    EXPECT_NEAR(P * compliance / deflection, 1.0, 3e-4) << "bond " << k;
-  }
-}
-TEST(BondWithMoments, chain_bends_like_a_timoshenko_beam_in_2D) {
-  bends<2>();
-}
-TEST(BondWithMoments, chain_bends_like_a_timoshenko_beam_in_3D) {
-  bends<3>();
+  const auto compare = [&](const std::string& what, int steps, double theory) {
+    verify({"quarter of a swing of a bond that " + what, "omega² = 2 k / I, k of its cross-section",
+            2e-3, "two steps of 1000"},
+           steps / theory - 1.0);
+  };
+  compare("bends, 2D", steps_of_half_a_swing<2>(Rot<2>(1.0), dt),
+          expected(1e10 * R * R / 3.0, inertia(2), dt));
+  compare("bends, 3D", steps_of_half_a_swing<3>(Vec<3>::UnitY(), dt),
+          expected(1e7 * R * R / 4.0, inertia(3), dt));
+  compare("twists", steps_of_half_a_swing<3>(Vec<3>::UnitX(), dt),
+          expected(4e6 * R * R / 2.0, inertia(3), dt));
 }
 
 // Stress at the edge of the cross-section: F_n / A + |M_b| r / I against the strength over A.
@@ -282,8 +109,11 @@ TEST(RollingResistance, is_bounded_by_the_normal_force) {
     dem::compute_contact_forces<2>(contacts, engine.particles(), {rest, turns, 1.0},
                                    dem::ShearIncrement::midpoint, 1e6, loads);
     moment = std::min(limit, 0.1 * n * limit);
-    EXPECT_NEAR(loads.own[0].moment[0], moment, 1e-9 * limit) << n;
-    EXPECT_NEAR(loads.own[1].moment[0], -moment, 1e-9 * limit) << n;
+    for (const std::size_t side : {0, 1})
+      verify({"moment of rolling resistance over its limit",
+              "mu_r R* F_n, doi:10.1016/j.powtec.2010.09.030", 1e-9,
+              "rounding of an overlap of 1e-4"},
+             loads.own[side].moment[0] / limit - (side == 0 ? moment : -moment) / limit);
   }
   EXPECT_NEAR(contacts.losses[0].friction, 30 * 0.1 * limit * limit / k_b, 1e-6 * limit);
 }

@@ -1,5 +1,6 @@
 // Stress and strain of particles and of boxes around them.
 #include "tests/cases/dem_models.hpp"
+#include "tests/verification/verification.hpp"
 
 #include "dem_core/gauge.hpp"
 #include "dem_core/probe.hpp"
@@ -57,7 +58,9 @@ TEST(Probe, reads_stress_and_strain_of_a_triangular_lattice_under_uniaxial_strai
     const auto reading = dem::read_probe<2>(cells, {}, body.contacts, body.particles);
     Symmetric<2> expected(C12, C12, 0.0);
     expected[axis] = C11;
-    EXPECT_LT((reading.stress / small - expected).norm(), 1e-6 * C11);
+    verify({"stress of a probe in a triangular lattice, over C11", "its moduli", 1e-6,
+            "nonlinear part at strains of 1e-7"},
+           (reading.stress / small - expected).norm() / C11);
     EXPECT_LT((reading.strain - dem::symmetric_part<2>(gradient)).norm(), 1e-9 * small);
     EXPECT_EQ(reading.particles, 36u);
     EXPECT_DOUBLE_EQ(reading.coordination_number, 6.0);
@@ -166,7 +169,9 @@ TEST(Stress, of_a_body_at_rest_is_that_of_the_forces_on_its_boundary) {
   const Box<2> box{Vec<2>::Constant(-2.0 * spacing), Vec<2>::Constant(12.0 * spacing)};
   const Symmetric<2> expected = dem::symmetric_part<2>(x_f) / std::pow(14.0 * spacing, 2);
   const auto reading = dem::read_probe<2>(box, {}, engine.contacts(), engine.particles());
-  EXPECT_LT((reading.stress - expected).norm(), 1e-6 * expected.norm());
+  verify({"stress of a body at rest", "sum of x f over its boundary", 1e-6,
+          "resultant that damping leaves"},
+         (reading.stress - expected).norm() / expected.norm());
 
   Symmetric<2> sum = Symmetric<2>::Zero();
   const auto each = dem::particle_stress(engine.contacts(), engine.particles());

@@ -1,6 +1,8 @@
 // Particles on walls and tools, against closed forms: sliding, rolling, bouncing, pressing.
 #include "tests/cases/dem_models.hpp"
+#include "tests/verification/verification.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace kerf {
@@ -17,6 +19,7 @@ constexpr double g = 10.0;      // m/s²
 constexpr double mu = 0.3;      //
 constexpr double radius = 1e-3; // m
 constexpr double k_wall = 1e6;  // normal and tangential stiffness, N/m
+const std::string spring = "swinging of the tangential spring";
 
 /// What the books leave unexplained.
 double balance(const dem::Energies& e) {
@@ -74,11 +77,16 @@ TEST(Walls, a_disc_that_cannot_turn_slides_until_friction_has_stopped_it) {
   const double way = engine.particles().displacement[0][0];
   std::printf("stops at %.6f of the time, %.6f of the way; energy off by %.1e\n", stopped / time,
               way * 2.0 * mu * g, worst);
-  EXPECT_NEAR(stopped, time, 2.0 * swing(engine) / (mu * g));
-  EXPECT_NEAR(way, 1.0 / (2.0 * mu * g), 2.0 * swing(engine) * time);
+  const double share = swing(engine); // of the speed of 1 m/s
+  verify({"time after which a sliding disc stops", "v0 / (mu g)", 2.0 * share, spring},
+         stopped / time - 1.0);
+  verify({"way on which a sliding disc stops", "v0² / (2 mu g)", 4.0 * share, spring},
+         way * 2.0 * mu * g - 1.0);
   EXPECT_NEAR(engine.energies().friction_dissipation, engine.energies().kinetic + start,
               1e-3 * start);
-  EXPECT_LT(worst, 1e-11); // the contact is linear and stays closed: rounding of 2e4 steps
+  verify({"energy that the books of a sliding disc miss", "first law", 1e-11,
+          "rounding of 2e4 steps; the contact is linear and stays closed"},
+         worst);
 }
 
 // Reference: with I = c m r², c = 1/2 for a disc and 2/5 for a sphere, the speed falls by mu g t
@@ -106,8 +114,13 @@ template <int dim> void slides_then_rolls() {
   mean /= rows;
   std::printf("%dD: rolls at %.5f of the time with %.6f of the speed; energy off by %.1e\n", dim,
               rolls_from / time, mean * (1.0 + c) / v0, worst);
-  EXPECT_NEAR(rolls_from, time, 2.0 * swing(engine) / (mu * g));
-  EXPECT_NEAR(mean, v0 / (1.0 + c), swing(engine));
+  const std::string body = dim == 2 ? "disc" : "sphere";
+  const double share = swing(engine) / v0;
+  verify({"time after which a sliding " + body + " rolls", "c / (1 + c) v0 / (mu g)",
+          2.0 * share * (1.0 + c) / c, spring},
+         rolls_from / time - 1.0);
+  verify({"speed at which a sliding " + body + " rolls", "v0 / (1 + c)", (1.0 + c) * share, spring},
+         mean * (1.0 + c) / v0 - 1.0);
   EXPECT_LT(worst, 1e-9);
 }
 TEST(Walls, a_disc_slides_until_it_rolls_with_two_thirds_of_its_speed) {
@@ -135,7 +148,10 @@ TEST(Walls, a_sphere_rolls_on_an_incline_up_to_seven_halves_of_the_friction_and_
         engine.particles().velocity[0][0] - radius * engine.particles().angular_velocity[0][1];
     std::printf("tan %.2f of the limit: %.5f of the acceleration, slip %.1e m/s\n", share,
                 acceleration / (share < 1.0 ? rolling : sliding), slip);
-    EXPECT_NEAR(acceleration, share < 1.0 ? rolling : sliding, 10.0 * swing(engine) / time);
+    verify({"acceleration of a sphere on an incline, over g",
+            "5/7 g sin, from tan > 7/2 mu on g (sin - mu cos)", 10.0 * swing(engine) / time / g,
+            spring},
+           (acceleration - (share < 1.0 ? rolling : sliding)) / g);
     if (share < 1.0)
       EXPECT_NEAR(slip, 0.0, 10.0 * swing(engine));
     else
@@ -165,7 +181,9 @@ TEST(Walls, a_sphere_bounces_off_a_plane_with_all_of_its_energy) {
     std::printf("omega dt %.3f: energy off by %.1e, rebound %.6f\n", share, worst,
                 engine.particles().velocity[0][2]);
     EXPECT_LT(worst, 0.5 * share * share);
-    EXPECT_NEAR(engine.particles().velocity[0][2], 1.0, 0.5 * share * share);
+    verify({"velocity after an elastic bounce, omega dt = " + fmt::format("{}", share), "energy",
+            0.5 * share * share, "(omega dt)² / 4 in the steps of closing and opening"},
+           engine.particles().velocity[0][2] - 1.0);
     EXPECT_NEAR(engine.particles().velocity[0][0], 0.3, 1e-14);
   }
 }
@@ -188,7 +206,9 @@ TEST(Walls, a_free_plate_shares_its_momentum_with_the_disc_that_it_hits) {
   const double v = engine.particles().velocity[0][1];
   const double v_plate = engine.tools()[0].velocity().translation[1];
   std::printf("impact: disc %.6f m/s, plate %.6f m/s\n", v, v_plate);
-  EXPECT_NEAR(v, 2.0 * plate / (mass + plate), 0.5 * share * share);
+  verify({"velocity of a disc hit by a free plate", "2 M / (m + M)", 0.5 * share * share,
+          "(omega dt)² / 4 in the steps of closing and opening"},
+         v - 2.0 * plate / (mass + plate));
   EXPECT_NEAR(mass * v + plate * v_plate, plate, 1e-13 * plate);
 }
 
@@ -264,8 +284,10 @@ TEST(Walls, a_plate_with_a_servo_presses_a_lattice_with_the_wanted_force) {
     cases::step(engine);
   const double push = engine.tools()[1].load().force[1], floor = -engine.tools()[0].load().force[1];
   std::printf("servo: %.6f, floor: %.6f of the wanted force\n", push / wanted, floor / wanted);
-  EXPECT_NEAR(push, wanted, 1e-4 * wanted);
-  EXPECT_NEAR(floor, wanted, 1e-4 * wanted);
+  for (const double force : {push, floor})
+    verify({"force of a servo and of the floor under it", "equilibrium", 1e-4,
+            "motion that damping leaves"},
+           force / wanted - 1.0);
 }
 
 // Reference: statics.
@@ -285,7 +307,8 @@ TEST(Walls, a_floor_carries_the_weight_of_a_column) {
   const double weight = 9.81 * mass[0] * static_cast<double>(mass.size());
   const auto& load = engine.tools()[0].load();
   std::printf("weight on the floor: %.8f of the column\n", -load.force[2] / weight);
-  EXPECT_NEAR(-load.force[2], weight, 1e-4 * weight);
+  verify({"weight that a floor carries", "statics", 1e-4, "motion that damping leaves"},
+         -load.force[2] / weight - 1.0);
   EXPECT_NEAR(load.force.head<2>().norm(), 0.0, 1e-4 * weight);
   EXPECT_NEAR(load.moment[1], 0.5 * spacing * weight, 1e-3 * spacing * weight);
 }
@@ -301,7 +324,8 @@ TEST(Walls, the_critical_step_is_that_of_a_disc_that_touches_a_wall) {
   settings.tools[0].material.tangential_stiffness = 0.0;
   for (const double share : {0.99, 1.01}) {
     dem::Engine<2> one(settings);
-    EXPECT_NEAR(one.step_limit().omega2, k_wall / mass, 1e-9 * k_wall / mass);
+    verify({"square of the frequency of a disc on a wall", "k_n / m", 1e-9, "rounding"},
+           one.step_limit().omega2 * mass / k_wall - 1.0);
     one.start(share * 2.0 / std::sqrt(one.step_limit().omega2));
     double highest = 0.0;
     for (int n = 0; n < 3000; ++n) {
