@@ -26,12 +26,12 @@ template <int dim> int steps_of_half_a_swing(const Rot<dim>& axis, double dt) {
   auto particles = engine.particles();
   auto contacts = engine.contacts();
   const double I = particles.inertia[0];
-  std::vector<Rot<dim>> omega = {-axis, axis};
+  std::vector<dem::Aligned<Rot<dim>>> omega = {-axis, axis};
   dem::Loads<dim> loads;
-  const std::vector<Vec<dim>> rest(2, Vec<dim>::Zero());
+  const std::vector<dem::Aligned<Vec<dim>>> rest(2);
   for (int n = 0;; ++n) {
     dem::compute_contact_forces<dim>(contacts, particles, {rest, omega, dt, dt},
-                                     dem::ShearIncrement::midpoint, 0.0, loads);
+                                     dem::ShearIncrement::midpoint, loads);
     for (int i = 0; i < 2; ++i)
       omega[static_cast<std::size_t>(i)] += dt / I * loads.own[static_cast<std::size_t>(i)].moment;
     if (omega[1].dot(axis) < 0.0)
@@ -78,10 +78,10 @@ TEST(BondWithMoments, breaks_by_bending_where_the_edge_reaches_the_strength) {
   const auto bonds_after = [&](double turn) {
     auto contacts = engine.contacts();
     dem::Loads<2> loads;
-    const std::vector<Vec<2>> rest(2, Vec<2>::Zero());
-    const std::vector<Rot<2>> turns = {Rot<2>(-0.5 * turn), Rot<2>(0.5 * turn)};
+    const std::vector<dem::Aligned<Vec<2>>> rest(2);
+    const std::vector<dem::Aligned<Rot<2>>> turns = {Rot<2>(-0.5 * turn), Rot<2>(0.5 * turn)};
     dem::compute_contact_forces<2>(contacts, engine.particles(), {rest, turns, 1.0},
-                                   dem::ShearIncrement::midpoint, 0.0, loads);
+                                   dem::ShearIncrement::midpoint, loads);
     return contacts.bonds();
   };
   EXPECT_EQ(bonds_after(phi * (1.0 - 1e-12)), 1u);
@@ -98,16 +98,16 @@ TEST(RollingResistance, is_bounded_by_the_normal_force) {
   dem::Engine<2> engine(settings);
   auto contacts = engine.contacts();
   dem::Loads<2> loads;
-  const std::vector<Vec<2>> rest(2, Vec<2>::Zero());
+  const std::vector<dem::Aligned<Vec<2>>> rest(2);
   const double F_n = 1e-4 * spacing * material.normal_stiffness;
   const double k_b = material.tangential_stiffness * std::pow(0.5 * radius, 2);
   const double limit = 0.2 * 0.5 * radius * F_n;
   double moment = 0.0;
   for (int n = 1; n <= 40; ++n) {
     const double turn = 0.1 * limit / k_b;
-    const std::vector<Rot<2>> turns = {Rot<2>(-0.5 * turn), Rot<2>(0.5 * turn)};
+    const std::vector<dem::Aligned<Rot<2>>> turns = {Rot<2>(-0.5 * turn), Rot<2>(0.5 * turn)};
     dem::compute_contact_forces<2>(contacts, engine.particles(), {rest, turns, 1.0},
-                                   dem::ShearIncrement::midpoint, 1e6, loads);
+                                   dem::ShearIncrement::midpoint, loads);
     moment = std::min(limit, 0.1 * n * limit);
     for (const std::size_t side : {0, 1})
       verify({"moment of rolling resistance over its limit",
