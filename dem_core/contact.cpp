@@ -191,7 +191,7 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
     const bool is_near = pair != pairs.end() && *pair == old;
     if (is_near)
       ++pair;
-    if (is_near || contacts.bonded_at_start[k])
+    if (is_near || contacts.bonded_at_start[k] || contacts.bonded[k])
       entries.push_back({old, k});
   }
   for (; pair != pairs.end(); ++pair)

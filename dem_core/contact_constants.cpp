@@ -141,7 +141,8 @@ void set_constants(Contacts<dim>& c, const Particles<dim>& particles, const Mate
     std::vector<double> each(c.size());
     for (std::size_t k = 0; k < c.size(); ++k)
       each[k] = constants_of<dim>(material, particles.density, particles.radius[c.first[k]],
-                                  particles.radius[c.second[k]], c.bonded_at_start[k] != 0).*
+                                  particles.radius[c.second[k]],
+                                  c.bonded_at_start[k] != 0 || c.bonded[k] != 0).*
                 member;
     target->set_each(std::move(each));
   }

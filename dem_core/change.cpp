@@ -1,0 +1,76 @@
+#include "dem_core/change.hpp"
+
+#include "dem_core/contact_constants.hpp"
+#include "dem_core/engine.hpp"
+#include "dem_core/gravity.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace kerf::dem {
+
+namespace {
+
+/// @return the number of new bonds
+template <int dim>
+std::size_t bond_pairs(Contacts<dim>& contacts, const Particles<dim>& particles,
+                       const Material& material, double gap_tolerance, double skin,
+                       const Period<dim>& period) {
+  if (contacts.law == ContactLaw::hertz_mindlin)
+    throw std::invalid_argument("hertz_mindlin has no bonds");
+  const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
+  renew_contacts(contacts, particles, material, std::max(skin, gap_tolerance * 2.0 * largest),
+                 period);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const double touching =
+        particles.radius[contacts.first[k]] + particles.radius[contacts.second[k]];
+    const Span<dim> span = span_of(contacts, particles, k);
+    if (contacts.bonded[k] || span.length - touching > gap_tolerance * touching)
+      continue;
+    contacts.bonded[k] = 1; // not at the start: its rest length is not that of the reference
+    if (span.opening > 0.0)
+      contacts.rest_length[k] = span.length;
+    ++count;
+  }
+  set_constants(contacts, particles, material);
+  return count;
+}
+
+} // namespace
+
+template <int dim> void Engine<dim>::change(const Change<dim>& change) {
+  if (change.damping) {
+    damping_ = *change.damping;
+    loads_.damping.clear(); // of the step before
+  }
+  if (change.gravity) {
+    // The trapezoidal rule has the old weight in the first half of a step and the new one in the
+    // second: the potential changes at u^n - v^(n-1/2) dt / 2.
+    const double half = 0.5 * time_step_;
+    weight_work_at_start_ +=
+        weight_work(*change.gravity, particles_, half) - weight_work(gravity_, particles_, half);
+    gravity_ = *change.gravity;
+  }
+  if (change.friction)
+    material_.friction = *change.friction;
+  check(material_);
+  if (change.boundary) {
+    boundary_ = Boundary<dim>(*change.boundary, particles_.reference, step_);
+    boundary_.advance(step_, time_step_);
+  }
+  for (const auto& [index, motion] : change.tools)
+    tools_.at(index).redirect(motion, static_cast<double>(step_) * time_step_);
+  if (change.bond_gap) {
+    bonds_at_start_ +=
+        bond_pairs(contacts_, particles_, material_, *change.bond_gap, skin_.width(), period_);
+    skin_ = Skin<dim>(skin_.width(), particles_.displacement);
+    ++renewals_;
+  }
+  forces_are_current_ = false;
+}
+
+template void Engine<2>::change(const Change<2>&);
+template void Engine<3>::change(const Change<3>&);
+
+} // namespace kerf::dem
