@@ -42,7 +42,7 @@ double to_number(const std::string& text, const std::filesystem::path& path, std
 
 } // namespace
 
-History::History(std::filesystem::path path, std::vector<Column> columns)
+History::History(std::filesystem::path path, std::vector<Column> columns, std::uint64_t first_step)
     : path_(std::move(path)), num_columns_(columns.size()) {
   std::string units, names;
   for (const Column& column : columns) {
@@ -54,11 +54,33 @@ History::History(std::filesystem::path path, std::vector<Column> columns)
   }
   if (path_.has_parent_path())
     std::filesystem::create_directories(path_.parent_path());
-  file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
+  const std::string header = units_mark + units + "\n" + names + "\n";
+  if (first_step != 0)
+    cut(header, first_step);
+  file_ = ::open(path_.c_str(),
+                 O_WRONLY | O_APPEND | O_CLOEXEC | (first_step == 0 ? O_CREAT | O_TRUNC : 0), 0644);
   if (file_ < 0)
     throw std::runtime_error(
         fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));
-  write_line(units_mark + units + "\n" + names + "\n");
+  if (first_step == 0)
+    write_line(header);
+}
+
+/// Leaves the rows before a step; a last line without its end goes, too.
+void History::cut(const std::string& header, std::uint64_t first_step) {
+  std::ifstream file(path_, std::ios::binary);
+  std::string start(header.size(), '\0');
+  if (!file.read(start.data(), static_cast<std::streamsize>(start.size())) || start != header)
+    throw std::runtime_error(
+        fmt::format("cannot go on with {}: it is missing or has other columns", path_.string()));
+  std::uintmax_t size = header.size();
+  std::string line;
+  for (std::size_t number = 3; std::getline(file, line) && !file.eof(); ++number) {
+    if (to_number(line.substr(0, line.find(',')), path_, number) >= static_cast<double>(first_step))
+      break;
+    size += line.size() + 1;
+  }
+  std::filesystem::resize_file(path_, size);
 }
 
 History::~History() {

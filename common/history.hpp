@@ -1,6 +1,7 @@
 // Time series of a run: one CSV file, a column per quantity, a row per moment.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -20,9 +21,11 @@ struct Column {
 class History {
 public:
   /// Starts the file anew; folders that are missing are made.
-  /// @throws std::runtime_error when the file cannot be written
+  /// @param first_step  other than 0: goes on with the file instead, of which the first column is
+  ///                    the step; rows from this step on are cut off
+  /// @throws std::runtime_error when the file cannot be written, or is not one to go on with
   /// @throws std::invalid_argument when a name or unit has a comma, a quote or a line break
-  History(std::filesystem::path path, std::vector<Column> columns);
+  History(std::filesystem::path path, std::vector<Column> columns, std::uint64_t first_step = 0);
   ~History();
   History(History&& other) noexcept;
   History& operator=(History&& other) noexcept;
@@ -34,6 +37,7 @@ public:
 
 private:
   void write_line(const std::string& line);
+  void cut(const std::string& header, std::uint64_t first_step);
 
   std::filesystem::path path_;
   std::size_t num_columns_ = 0;

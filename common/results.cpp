@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
 namespace kerf {
@@ -155,11 +157,28 @@ void write_frame(const std::filesystem::path& path, std::uint64_t step, double t
 
 } // namespace
 
-FrameWriter::FrameWriter(std::filesystem::path run_folder, std::string participant, int dimension)
+FrameWriter::FrameWriter(std::filesystem::path run_folder, std::string participant, int dimension,
+                         std::uint64_t first_step)
     : run_folder_(std::move(run_folder)), participant_(std::move(participant)),
       dimension_(static_cast<std::size_t>(dimension)) {
   if (dimension != 2 && dimension != 3)
     throw std::invalid_argument(fmt::format("a frame has 2 or 3 dimensions, not {}", dimension));
+  if (first_step != 0)
+    cut(first_step);
+}
+
+void FrameWriter::cut(std::uint64_t first_step) {
+  std::ifstream file(run_folder_ / (participant_ + ".xdmf"), std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  entries_ = read_index(text.str());
+  if (entries_.empty()) // the run writes no frames
+    return;
+  entries_.erase(entries_.lower_bound(first_step), entries_.end());
+  write_index();
+  for (const FrameFile& frame : list_frames(run_folder_, participant_))
+    if (frame.step >= first_step)
+      std::filesystem::remove(frame.path);
 }
 
 void FrameWriter::write(std::uint64_t step, double time, std::span<const Grid> grids) {
@@ -169,6 +188,10 @@ void FrameWriter::write(std::uint64_t step, double time, std::span<const Grid> g
     write_frame(temporary, step, time, layouts, dimension_);
   });
   entries_[step] = index_entry(file, step, time, layouts, dimension_);
+  write_index();
+}
+
+void FrameWriter::write_index() const {
   write_text(run_folder_ / (participant_ + ".xdmf"), index_text(participant_, entries_));
 }
 

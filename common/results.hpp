@@ -49,8 +49,11 @@ struct Grid {
 /// get a third component of zero, because viewers want vectors of three.
 class FrameWriter {
 public:
-  /// @param dimension  2 or 3, of the positions
-  FrameWriter(std::filesystem::path run_folder, std::string participant, int dimension);
+  /// @param dimension   2 or 3, of the positions
+  /// @param first_step  other than 0: goes on with the frames before this step; later ones are
+  ///                    removed
+  FrameWriter(std::filesystem::path run_folder, std::string participant, int dimension,
+              std::uint64_t first_step = 0);
 
   /// @param time  s
   /// @throws std::invalid_argument when an array does not fit its grid; nothing is written then
@@ -58,6 +61,9 @@ public:
   void write(std::uint64_t step, double time, std::span<const Grid> grids);
 
 private:
+  void cut(std::uint64_t first_step);
+  void write_index() const;
+
   std::filesystem::path run_folder_;
   std::string participant_;
   std::size_t dimension_;

@@ -93,4 +93,18 @@ std::string index_text(const std::string& participant,
   return text + "  </Grid>\n</Domain>\n</Xdmf>\n";
 }
 
+std::map<std::uint64_t, std::string> read_index(const std::string& text) {
+  const std::string begin = "\n    <Grid Name=\"step ", end = "\n    </Grid>\n";
+  std::map<std::uint64_t, std::string> entries;
+  for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
+    const std::size_t last = text.find(end, at);
+    if (last == std::string::npos)
+      break;
+    const std::uint64_t step = std::stoull(text.substr(at + begin.size(), 20));
+    entries[step] = text.substr(at + 1, last + end.size() - (at + 1));
+    at = last + end.size() - 1;
+  }
+  return entries;
+}
+
 } // namespace kerf

@@ -30,4 +30,7 @@ std::string index_entry(const std::string& file, std::uint64_t step, double time
 std::string index_text(const std::string& participant,
                        const std::map<std::uint64_t, std::string>& entries);
 
+/// The entries of an index that index_text() made.
+std::map<std::uint64_t, std::string> read_index(const std::string& text);
+
 } // namespace kerf

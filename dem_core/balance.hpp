@@ -4,6 +4,7 @@
 #include "dem_core/boundary.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
+#include "dem_core/energy.hpp"
 #include "dem_core/particles.hpp"
 
 namespace kerf::dem {
@@ -14,5 +15,10 @@ namespace kerf::dem {
 template <int dim>
 double unbalanced_force(const Contacts<dim>& contacts, const Particles<dim>& particles,
                         const Boundary<dim>& boundary, const Loads<dim>& loads);
+
+/// Kinetic over elastic energy; zero where nothing is stored.
+inline double kinetic_ratio(const Energies& energies) {
+  return energies.elastic > 0.0 ? energies.kinetic / energies.elastic : 0.0;
+}
 
 } // namespace kerf::dem

@@ -34,8 +34,8 @@ Vec<dim> step_velocity(const Prescription<dim>& p, std::uint64_t step, double dt
 
 template <int dim>
 Boundary<dim>::Boundary(std::vector<Prescription<dim>> prescriptions,
-                        std::span<const Vec<dim>> reference)
-    : prescriptions_(std::move(prescriptions)), selected_(prescriptions_.size()) {
+                        std::span<const Vec<dim>> reference, std::uint64_t begin)
+    : prescriptions_(std::move(prescriptions)), begin_(begin), selected_(prescriptions_.size()) {
   if (prescriptions_.empty())
     return;
   std::vector<std::uint8_t> components(reference.size(), 0);
@@ -56,7 +56,7 @@ Boundary<dim>::Boundary(std::vector<Prescription<dim>> prescriptions,
 
 template <int dim> void Boundary<dim>::advance(std::uint64_t step, double time_step) {
   for (std::size_t k = 0; k < prescriptions_.size(); ++k) {
-    const Vec<dim> v = step_velocity(prescriptions_[k], step, time_step);
+    const Vec<dim> v = step_velocity(prescriptions_[k], step - begin_, time_step);
     for (const std::uint32_t i : selected_[k])
       for (int a = 0; a < dim; ++a)
         if ((prescriptions_[k].components >> a & 1u) != 0)

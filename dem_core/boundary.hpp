@@ -21,7 +21,9 @@ template <int dim> struct PrescribedMotion {
 
 template <int dim> class Boundary {
 public:
-  Boundary(std::vector<Prescription<dim>> prescriptions, std::span<const Vec<dim>> reference);
+  /// @param begin  step from which the motions count their time
+  Boundary(std::vector<Prescription<dim>> prescriptions, std::span<const Vec<dim>> reference,
+           std::uint64_t begin = 0);
 
   bool prescribes(std::size_t i, int component) const noexcept {
     const PrescribedMotion<dim>* motion = of(i);
@@ -44,7 +46,10 @@ public:
   void advance(std::uint64_t step, double time_step);
 
 private:
+  friend struct StateParts;
+
   std::vector<Prescription<dim>> prescriptions_;
+  std::uint64_t begin_ = 0;                          // step
   std::vector<std::vector<std::uint32_t>> selected_; // particles of each prescription
   std::vector<std::uint32_t> particles_;
   std::vector<PrescribedMotion<dim>> motion_; // of each of particles_

@@ -93,7 +93,7 @@ template <int dim> struct Contacts {
   // particle of another block waits in a row behind those of the particles: block by block nobody
   // writes where another one does, and the rows are added in the order of the contacts.
   std::vector<std::uint32_t> block_offset;    // [blocks + 1] contacts of each block
-  std::vector<std::uint32_t> loose_offset;    // [blocks] where its bonds of the start end
+  std::vector<std::uint32_t> loose_offset;    // [blocks] the first that never had a bond
   std::vector<std::uint32_t> target;          // [contacts] row of the loads of the second
   std::vector<std::uint32_t> waiting_offset;  // [blocks + 1] waiting rows that each block writes
   std::vector<std::uint32_t> incoming_offset; // [blocks + 1] of what each block receives:
@@ -106,8 +106,8 @@ template <int dim> struct Contacts {
   std::size_t blocks() const noexcept { return block_offset.size() - 1; }
   std::size_t waiting_rows() const noexcept { return incoming_row.size(); }
   std::size_t bonds() const noexcept; // that hold now
-  /// Stays in the list for ever.
-  bool bonded_at_start(std::size_t k) const noexcept {
+  /// Has or had a bond: stays in the list for ever, with its stress-free distance.
+  bool was_bonded(std::size_t k) const noexcept {
     return k < loose_offset[first[k] / particles_per_block];
   }
   double memory() const; // bytes
@@ -126,11 +126,19 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
                             std::optional<double> gap_tolerance, double skin,
                             const Period<dim>& period);
 
-/// Makes the list again for the current positions. What was bonded at the start stays, with its
-/// stress-free distance; other pairs stay while they are within the skin, and keep their history.
+/// Makes the list again for the current positions. What has or had a bond stays; other pairs stay
+/// while they are within the skin, and keep their history.
 template <int dim>
 void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
                     const Material& material, double skin, const Period<dim>& period);
+
+/// Bonds all pairs with a gap of at most gap_tolerance (r_i + r_j), in a list made again. Who
+/// touches keeps force and stress-free distance; across a gap a bond is free of stress where it is.
+/// @return the number of new bonds
+template <int dim>
+std::size_t bond_pairs(Contacts<dim>& contacts, const Particles<dim>& particles,
+                       const Material& material, double gap_tolerance, double skin,
+                       const Period<dim>& period);
 
 /// Sets w_c = (r_j w_i + r_i w_j) / (r_i + r_j): 1 - alpha, which is linear, at the point of
 /// contact, bounded there. One value for both sides keeps the pair of forces opposite.

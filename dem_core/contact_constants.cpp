@@ -147,7 +147,7 @@ void set_constants(Contacts<dim>& c, const Particles<dim>& particles, const Mate
   for (std::int64_t k = 0; k < count; ++k) {
     const Constants one =
         constants_of<dim>(material, particles.density, particles.radius[c.first[k]],
-                          particles.radius[c.second[k]], c.bonded_at_start(k));
+                          particles.radius[c.second[k]], c.was_bonded(k));
     for (std::size_t which = 0; which < each.size(); ++which)
       each[which][k] = one.*constants[which].second;
   }

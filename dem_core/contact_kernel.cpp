@@ -145,9 +145,9 @@ template <int dim> struct MomentLaw {
 };
 
 /// The first pass: where the contacts are. The difference of the squares of length and rest length
-/// comes from the displacement, so that it keeps its digits when it is small; bonds are free of
-/// stress at their reference.
-template <int dim, bool bonds, bool whole>
+/// comes from the displacement, so that it keeps its digits when it is small; what is left of it
+/// where bonds are free of stress at their reference is rounding.
+template <int dim, bool whole>
 KERF_INLINE void find_opening(const Batch<dim, whole>& batch, Chunk<dim>& chunk) {
   const LaneVector<dim> relative = batch.column(chunk.relative);
   LaneVector<dim> B;
@@ -161,9 +161,10 @@ KERF_INLINE void find_opening(const Batch<dim, whole>& batch, Chunk<dim>& chunk)
   const Lanes inverse_length = inverse_square_root(length2);
   const Lanes length = length2 * inverse_length;
   const Lanes rest = batch.get(batch.c.rest_length);
-  Lanes growth = dot(relative, sum(relative, broadcast(2.0), B));
-  if constexpr (!bonds)
-    growth += dot(B, B) - rest * rest;
+  constexpr double rounding = 4e-15;
+  const Lanes rest2 = rest * rest, start = dot(B, B) - rest2;
+  const Lanes growth = dot(relative, sum(relative, broadcast(2.0), B)) +
+                       select(absolute(start) > rounding * rest2, start, Lanes{});
   batch.set_column(chunk.normal, scaled(inverse_length, branch));
   store(&chunk.length[batch.at], length);
   store(&chunk.opening[batch.at], growth * inverse(length + rest));
@@ -338,7 +339,7 @@ KERF_INLINE void prefetch(const ContactView<dim>& c, std::size_t begin, std::siz
   }
 }
 
-/// Contacts begin to end of one block: all of them bonds at the start, or none.
+/// Contacts begin to end of one block: all of them have or had a bond, or none.
 template <int dim, class Law, bool more, bool bonds>
 KERF_INLINE void compute_all(ContactView<dim>& c, std::size_t begin, std::size_t end) {
   Chunk<dim> chunk;
@@ -346,7 +347,7 @@ KERF_INLINE void compute_all(ContactView<dim>& c, std::size_t begin, std::size_t
     chunk.start(c, k, end);
     prefetch(c, least(end, k + 2 * chunk_size), least(end, k + 3 * chunk_size));
     gather_difference(chunk, c.displacement, chunk.relative);
-    for_batches(c, chunk, [&](auto batch) KERF_LAMBDA { find_opening<dim, bonds>(batch, chunk); });
+    for_batches(c, chunk, [&](auto batch) KERF_LAMBDA { find_opening<dim>(batch, chunk); });
     if (!bonds && all_apart(c, chunk))
       continue;
     gather_difference(chunk, c.translation, chunk.moved);

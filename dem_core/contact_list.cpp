@@ -169,7 +169,7 @@ template <int dim> std::vector<std::uint32_t> ascending(const Contacts<dim>& c, 
   };
   std::vector<std::uint32_t> order(c.block_offset[block + 1] - c.block_offset[block]);
   std::iota(order.begin(), order.end(), c.block_offset[block]);
-  // Three ascending parts: bonds of the start, then what touched and what was apart.
+  // Three ascending parts: what was bonded, what touched and what was apart.
   const auto loose = order.begin() + (c.loose_offset[block] - c.block_offset[block]);
   std::inplace_merge(loose, std::is_sorted_until(loose, order.end(), less), order.end(), less);
   std::inplace_merge(order.begin(), loose, order.end(), less);
@@ -216,7 +216,7 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
   fill(c, lists, particles.size(),
        [&](std::size_t k, const Entry& entry) { set_new(c, k, entry.pair, particles, period); });
   for (std::size_t k = 0; k < c.size(); ++k)
-    if (c.bonded_at_start(k)) {
+    if (c.was_bonded(k)) {
       c.bonded[k] = 1;
       c.rest_length[k] = c.reference_branch[k].norm();
     }
@@ -240,7 +240,7 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
           const bool is_near = pair != of_block.end() && *pair == old;
           if (is_near)
             ++pair;
-          if (contacts.bonded_at_start(k))
+          if (contacts.was_bonded(k) || contacts.bonded[k])
             list.bonds.push_back({old, k});
           else if (is_near)
             (contacts.normal_force[k] != 0.0 ? list.touching : list.apart).push_back({old, k});
@@ -264,6 +264,31 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
   contacts = std::move(renewed);
 }
 
+template <int dim>
+std::size_t bond_pairs(Contacts<dim>& contacts, const Particles<dim>& particles,
+                       const Material& material, double gap_tolerance, double skin,
+                       const Period<dim>& period) {
+  if (contacts.law == ContactLaw::hertz_mindlin)
+    throw std::invalid_argument("hertz_mindlin has no bonds");
+  const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
+  const double reach = std::max(skin, gap_tolerance * 2.0 * largest);
+  renew_contacts(contacts, particles, material, reach, period);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const double touching =
+        particles.radius[contacts.first[k]] + particles.radius[contacts.second[k]];
+    const Span<dim> span = span_of(contacts, particles, k);
+    if (contacts.bonded[k] || span.length - touching > gap_tolerance * touching)
+      continue;
+    contacts.bonded[k] = 1;
+    if (span.opening > 0.0)
+      contacts.rest_length[k] = span.length;
+    ++count;
+  }
+  renew_contacts(contacts, particles, material, skin, period); // to their place among the bonds
+  return count;
+}
+
 template Contacts<2> make_contacts<2>(const Particles<2>&, const Material&, std::optional<double>,
                                       double, const Period<2>&);
 template Contacts<3> make_contacts<3>(const Particles<3>&, const Material&, std::optional<double>,
@@ -272,5 +297,9 @@ template void renew_contacts<2>(Contacts<2>&, const Particles<2>&, const Materia
                                 const Period<2>&);
 template void renew_contacts<3>(Contacts<3>&, const Particles<3>&, const Material&, double,
                                 const Period<3>&);
+template std::size_t bond_pairs<2>(Contacts<2>&, const Particles<2>&, const Material&, double,
+                                   double, const Period<2>&);
+template std::size_t bond_pairs<3>(Contacts<3>&, const Particles<3>&, const Material&, double,
+                                   double, const Period<3>&);
 
 } // namespace kerf::dem

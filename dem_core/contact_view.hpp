@@ -22,7 +22,7 @@ struct ContactConstant {
 template <int dim> struct ContactView {
   static constexpr int shear_components = dim == 2 ? 1 : 3;
 
-  std::size_t begin, loose, end; // contacts of this block; bonds of the start come first
+  std::size_t begin, loose, end; // contacts of this block; what has or had a bond comes first
 
   // One entry a contact; see Contacts.
   const std::uint32_t *first, *second, *target;

@@ -1,7 +1,9 @@
 // The particle engine: a model, its state, and the calls of one time step in their order.
 #pragma once
 
+#include "common/state.hpp"
 #include "dem_core/boundary.hpp"
+#include "dem_core/change.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/crack.hpp"
@@ -74,6 +76,22 @@ public:
   /// @param time_step  s, > 0; it is not compared with step_limit() here
   void start(double time_step);
 
+  std::uint64_t step() const noexcept { return step_; }    // n, between two steps
+  double time_step() const noexcept { return time_step_; } // of start(), s
+  /// All that steps have changed, between two steps.
+  State state() const;
+  /// @throws std::invalid_argument when a state is of another model
+  void check_model(const State& state) const;
+  /// Goes on from the state of another engine with the same settings; after set_weights() and
+  /// start().
+  /// @throws std::invalid_argument when it is of another model
+  void restore(const State& state);
+
+  /// Between two steps, after start(). Before restore(), of everything but bonds, it makes settings
+  /// those that the state was made with.
+  /// @throws std::invalid_argument for a value or a motion that cannot be
+  void change(const Change<dim>& change);
+
   /// x^n in m and v^(n-1/2) in m/s (v^0 in the first step); prescribed components give v^(n+1/2).
   void motion(std::span<const std::uint32_t> points, std::span<double> position,
               std::span<double> velocity) const;
@@ -96,6 +114,8 @@ public:
   std::optional<std::uint32_t> first_outside(const Box<dim>& box) const;
 
 private:
+  friend struct StateParts;
+
   void add_tools(const Settings<dim>& settings);
   std::vector<double> row_sums() const;
   void book_step();

@@ -43,6 +43,8 @@ public:
   bool is_worn(std::span<const Aligned<Vec<dim>>> displacement);
 
 private:
+  friend struct StateParts;
+
   double width_ = 0.0;
   double bound_ = 0.0; // of the distance that any particle has moved, m
   std::vector<Vec<dim>> displacement_;

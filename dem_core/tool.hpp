@@ -30,6 +30,10 @@ public:
   /// @throws std::invalid_argument when the motion cannot be, see ToolMover
   Tool(ToolShape<dim> shape, const ToolMotion<dim>& motion);
 
+  /// Goes on with another motion, see ToolMover::redirect(); between two steps.
+  void redirect(const ToolMotion<dim>& motion, double t) { mover_.redirect(motion, t, velocity_); }
+  Rot<dim> axis() const { return mover_.axis(); }
+
   const ToolShape<dim>& shape() const noexcept { return shape_; }
 
   /// @param step       0 first, then one more each time
@@ -72,6 +76,8 @@ public:
   }
 
 private:
+  friend struct StateParts;
+
   ToolShape<dim> shape_;
   ToolMover<dim> mover_;
   std::uint64_t step_ = 0;

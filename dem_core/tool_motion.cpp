@@ -71,25 +71,44 @@ double servo_velocity(const Servo<dim>& servo, double t, double time_step,
 
 template <int dim>
 ToolMover<dim>::ToolMover(const ToolMotion<dim>& motion)
-    : motion_(checked(motion)), free_translation_(Vec<dim>::Zero()),
-      free_velocity_(initial_velocity().translation), free_rate_(motion_.rotation_rate.value(0.0)) {
-}
+    : motion_(checked(motion)), translation_before_(Vec<dim>::Zero()),
+      free_translation_(Vec<dim>::Zero()), free_velocity_(initial_velocity().translation),
+      free_rate_(motion_.rotation_rate.value(0.0)) {}
 
 template <int dim> Vec<dim> ToolMover<dim>::translation(double t) const {
   Vec<dim> u;
   for (int a = 0; a < dim; ++a)
-    u[a] = motion_.velocity[a].integral(t);
+    u[a] = motion_.velocity[a].integral(t - begin_);
   if (const auto& free = motion_.free_translation)
     for (int a = 0; a < dim; ++a)
       if (free->axes[a])
         u[a] = free_translation_[a];
   if (const auto& servo = motion_.servo)
     u += (servo_way_ - u.dot(servo->direction)) * servo->direction;
-  return u;
+  return translation_before_ + u;
 }
 
 template <int dim> double ToolMover<dim>::angle(double t) const {
-  return motion_.free_rotation ? free_angle_ : motion_.rotation_rate.integral(t);
+  return angle_before_ +
+         (motion_.free_rotation ? free_angle_ : motion_.rotation_rate.integral(t - begin_));
+}
+
+template <int dim>
+void ToolMover<dim>::redirect(const ToolMotion<dim>& motion, double t,
+                              const RigidVelocity<dim>& velocity) {
+  const ToolMotion<dim> next = checked(motion);
+  const Vec<dim> way = translation(t);
+  const double turned = angle(t);
+  if (turned != 0.0 && next.axis.dot(motion_.axis) < 1.0 - 1e-12)
+    throw std::invalid_argument("a tool that has turned keeps its axis");
+  motion_ = next;
+  begin_ = t;
+  translation_before_ = way;
+  angle_before_ = turned;
+  servo_way_ = free_angle_ = 0.0;
+  free_translation_.setZero();
+  free_velocity_ = velocity.translation;
+  free_rate_ = velocity.rotation.dot(motion_.axis);
 }
 
 template <int dim> RigidVelocity<dim> ToolMover<dim>::initial_velocity() const {
@@ -105,8 +124,8 @@ template <int dim> RigidVelocity<dim> ToolMover<dim>::initial_velocity() const {
 template <int dim>
 RigidVelocity<dim> ToolMover<dim>::advance(std::uint64_t step, double time_step,
                                            const ToolLoad<dim>& load) {
-  const double now = static_cast<double>(step) * time_step;
-  const double then = static_cast<double>(step + 1) * time_step;
+  const double now = static_cast<double>(step) * time_step - begin_;
+  const double then = static_cast<double>(step + 1) * time_step - begin_;
   const double kick = step == 0 ? 0.5 * time_step : time_step; // from v^0, or from v^(n-1/2)
 
   RigidVelocity<dim> v;

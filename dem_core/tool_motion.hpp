@@ -84,6 +84,11 @@ public:
 
   Vec<dim> translation(double t) const; // of the reference point since the start, m; t is t_n
   double angle(double t) const;         // since the start, rad; t is t_n
+  /// Goes on with another motion from where the point is at t_n, which its tables count from. What
+  /// becomes or stays free keeps the velocity, given as v^(n-1/2).
+  /// @throws std::invalid_argument as the constructor; also for another axis of what has turned
+  void redirect(const ToolMotion<dim>& motion, double t, const RigidVelocity<dim>& velocity);
+
   Rot<dim> axis() const { return motion_.axis; }
 
   double inverse_mass() const noexcept { // along free axes, 1/kg; 0 without one
@@ -98,12 +103,17 @@ public:
   RigidVelocity<dim> advance(std::uint64_t step, double time_step, const ToolLoad<dim>& load);
 
 private:
-  ToolMotion<dim> motion_;    // direction and axis are unit vectors
-  double servo_way_ = 0.0;    // along its direction, m
-  Vec<dim> free_translation_; // along free axes, m
-  Vec<dim> free_velocity_;    // v^(n-1/2) along free axes, m/s
-  double free_angle_ = 0.0;   // rad
-  double free_rate_ = 0.0;    // omega^(n-1/2), rad/s
+  friend struct StateParts;
+
+  ToolMotion<dim> motion_;      // direction and axis are unit vectors
+  double begin_ = 0.0;          // of this motion, s
+  Vec<dim> translation_before_; // made by motions before it, m
+  double angle_before_ = 0.0;   // rad
+  double servo_way_ = 0.0;      // along its direction, m
+  Vec<dim> free_translation_;   // along free axes, m
+  Vec<dim> free_velocity_;      // v^(n-1/2) along free axes, m/s
+  double free_angle_ = 0.0;     // rad
+  double free_rate_ = 0.0;      // omega^(n-1/2), rad/s
 };
 
 } // namespace kerf::dem

@@ -57,6 +57,8 @@ public:
   double friction_loss() const;  // so far, J
 
 private:
+  friend struct StateParts;
+
   /// Contacts by particle; those of one particle stand together.
   struct List {
     std::vector<WallContact<dim>> contacts;

@@ -42,6 +42,8 @@ public:
   double at_step() const { return at_step_; }
 
 private:
+  friend struct StateParts;
+
   double total_ = 0.0;   // J
   double at_step_ = 0.0; // J
 };

@@ -1,6 +1,7 @@
 // The engine: a finite element body that steps in time.
 #pragma once
 
+#include "common/state.hpp"
 #include "fem_core/boundary.hpp"
 #include "fem_core/elements.hpp"
 #include "fem_core/energy.hpp"
@@ -43,6 +44,15 @@ public:
   /// @throws std::invalid_argument unless the time step, s, is positive
   void start(double time_step);
 
+  std::uint64_t step() const { return static_cast<std::uint64_t>(step_); } // n, between two steps
+  /// All that steps have changed, between two steps.
+  State state() const;
+  /// @throws std::invalid_argument when a state is of another model
+  void check_model(const State& state) const;
+  /// Goes on from the state of another engine with the same mesh and settings; after start().
+  /// @throws std::invalid_argument when it is of another model
+  void restore(const State& state);
+
   /// x^n, m, and v^(n-1/2), m/s (v^0 before the first step); prescribed components give the
   /// velocity with which they are about to move, v^(n+1/2).
   void motion(std::span<const std::uint32_t> nodes, std::span<double> position,
@@ -69,6 +79,8 @@ public:
   std::optional<std::uint32_t> first_non_finite() const;
 
 private:
+  friend struct StateParts;
+
   void move_boundary();
   Work reaction_work() const;
   Work interface_work() const;

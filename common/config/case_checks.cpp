@@ -433,6 +433,7 @@ private:
 
 void check_settings(json& settings, const Document& document, Problems& problems) {
   Checks(settings, document, problems).run();
+  check_stages(settings, problems);
 }
 
 } // namespace kerf::config

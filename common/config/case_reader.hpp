@@ -20,6 +20,9 @@ nlohmann::json read_settings(const Document& document, const std::filesystem::pa
 /// Also fills in the kinds of measures that are their names.
 void check_settings(nlohmann::json& settings, const Document& document, Problems& problems);
 
+/// The part of check_settings() about stages, stop conditions and the end of the run.
+void check_stages(const nlohmann::json& settings, Problems& problems);
+
 /// The settings as TOML, in the order of the table of keys.
 std::string settings_toml(const nlohmann::json& settings);
 

@@ -18,8 +18,8 @@ std::vector<Key> case_keys() {
       {"case.dimension", "", integer, "", required, one_of({"2", "3"}), "2",
        "the dimension of space; 2 is plane strain, per metre of thickness"},
       {"case.seed", "", integer, "", "1", in(from_zero), "1", "the seed of everything random"},
-      {"case.end_time", "", number, "s", required, in(above_zero), "4e-5",
-       "the time at which the run ends"},
+      {"case.end_time", "", number, "s", none, in(above_zero), "4e-5",
+       "the time at which the run ends; with stages it may be left out", live},
       {"case.time_step", "", number_or_auto, "s", R"("auto")", in(above_zero), "1e-8",
        R"(the step of all participants, or "auto" for time_step_factor times the critical step)"},
       {"case.time_step_factor", "", number, "", "0.8",
@@ -46,9 +46,16 @@ std::vector<Key> case_keys() {
        "the number of frames over the run; 0 for none"},
       {"case.output.history", "", integer, "", "200", in(from_one), "200",
        "the number of rows of the time series over the run"},
-      {"participants", "", named_tables, "", required, anything, "participant",
-       "every process that takes part, by name"},
+      {"case.output.checkpoints", "", integer, "", "0", in(from_zero), "10",
+       "the number of checkpoints over the run, from which kerf run --restart goes on; 0 for none"},
+      {"case.output.keep_checkpoints", "", integer, "", "2", in(from_one), "2",
+       "how many of them are kept, the newest"},
   };
+}
+
+std::vector<Key> participants_key() {
+  return {{"participants", "", Type::named_tables, "", required, anything, "participant",
+           "every process that takes part, by name"}};
 }
 
 std::vector<Key> coupling_and_measure_keys() {
@@ -102,7 +109,8 @@ std::vector<Key> coupling_and_measure_keys() {
 const std::vector<Key>& schema() {
   static const std::vector<Key> all = [] {
     std::vector<Key> keys = case_keys();
-    for (const auto& part : {particle_keys(), mesh_keys(), coupling_and_measure_keys()})
+    for (const auto& part : {stop_keys("case.stop"), participants_key(), particle_keys(),
+                             mesh_keys(), coupling_and_measure_keys(), stage_keys(particle_keys())})
       keys.insert(keys.end(), part.begin(), part.end());
     return keys;
   }();

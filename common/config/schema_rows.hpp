@@ -35,6 +35,11 @@ std::vector<Key> mesh_keys();
 /// Those of its rigid tools; of particles only.
 std::vector<Key> tool_keys();
 
+/// The keys of a list of stop conditions.
+std::vector<Key> stop_keys(const std::string& key);
+/// The keys of stages, some of which are keys of particles again.
+std::vector<Key> stage_keys(const std::vector<Key>& particles);
+
 /// The keys of "participants.*.particles.packing", which is made before the run.
 std::vector<Key> packing_keys();
 

@@ -41,6 +41,24 @@ OverlapSettings overlap_settings(const nlohmann::json& coupling, const nlohmann:
   return overlap;
 }
 
+/// A tiny excess of the time over a multiple of the step does not earn a step of its own.
+std::uint64_t steps_until(double time, double step, const std::string& key) {
+  const double steps = std::max(1.0, std::ceil(time / step * (1.0 - 1e-12)));
+  if (steps > 9e15)
+    throw RunError(ErrorKind::bad_input, key,
+                   fmt::format("{:g} steps of {:g} s are too many\nend earlier", steps, step));
+  return static_cast<std::uint64_t>(steps);
+}
+
+/// Where the case has what a participant was told as its own.
+std::string key_in_case(const std::string& participant, const std::string& key) {
+  if (key.starts_with("stages["))
+    return key;
+  if (key.starts_with("stop["))
+    return "case." + key;
+  return fmt::format("participants.{}{}{}", participant, key.empty() ? "" : ".", key);
+}
+
 } // namespace
 
 Broker::Broker(RunSetup setup, Supervisor& supervisor)
@@ -66,8 +84,9 @@ nlohmann::json Broker::run() {
     stop_all(error.what());
     throw error;
   } catch (const Interrupted& interrupted) {
+    await_last_checkpoint();
     stop_all("it was interrupted by the user");
-    throw Interrupted(interrupted.signal(), place());
+    throw Interrupted(interrupted.signal(), place(), last_checkpoint());
   } catch (const std::exception& error) {
     stop_all(error.what());
     throw;
@@ -108,7 +127,9 @@ void Broker::shake_hands() {
     serve(std::chrono::milliseconds(50));
   }
   for (Member& m : members_) {
-    const nlohmann::json& table = setup_.settings.at("participants").at(m.name);
+    nlohmann::json table = setup_.settings.at("participants").at(m.name);
+    table["stages"] = setup_.settings.at("stages");
+    table["stop"] = setup_.settings.at("case").at("stop");
     Assignment assignment;
     assignment.name = m.name;
     assignment.settings = table.dump();
@@ -116,6 +137,8 @@ void Broker::shake_hands() {
     assignment.run_folder = setup_.run_folder;
     assignment.plan_only = setup_.plan_only;
     assignment.broker_pid = getpid();
+    if (setup_.restart)
+      assignment.restart = setup_.restart->folder;
     tell(m, to_message(assignment));
   }
 }
@@ -180,6 +203,8 @@ void Broker::collect_declarations() {
       throw ProtocolError(fmt::format("it declares {} dimensions, the case has {}",
                                       m.declaration.dimension, dimension));
   });
+  require_checkpoints();
+  require_stages();
 }
 
 void Broker::make_couplings() {
@@ -272,7 +297,6 @@ void Broker::choose_time_step() {
   critical_step_ = largest > 0.0 ? 2.0 / std::sqrt(largest) : INFINITY; // Rojek (2008) eq. 10
 
   const nlohmann::json& table = setup_.settings.at("case");
-  const double end_time = table.at("end_time");
   double step = 0.0;
   if (table.at("time_step").is_number()) {
     step = table.at("time_step");
@@ -287,24 +311,32 @@ void Broker::choose_time_step() {
   } else {
     step = table.at("time_step_factor").get<double>() * critical_step_;
   }
-  // A tiny excess of end_time over a multiple of the step does not earn a step of its own.
-  const double steps = std::max(1.0, std::ceil(end_time / step * (1.0 - 1e-12)));
-  if (steps > 9e15)
-    throw RunError(ErrorKind::bad_input, "case.end_time",
-                   fmt::format("{:g} steps of {:g} s are too many\nend earlier", steps, step));
-  schedule_.steps = static_cast<std::uint64_t>(steps);
-  schedule_.time_step = table.at("time_step").is_number() ? step : end_time / steps;
+  if (table.at("end_time").is_null()) {
+    schedule_.time_step = step;
+    last_step_ = UINT64_MAX;
+  } else {
+    const double end_time = table.at("end_time");
+    last_step_ = steps_until(end_time, step, "case.end_time");
+    schedule_.time_step =
+        table.at("time_step").is_number() ? step : end_time / static_cast<double>(last_step_);
+  }
+  count_stages();
   const auto every = [&](const char* key) -> std::uint64_t {
     const std::uint64_t samples = table.at("output").at(key);
     return samples == 0 ? 0 : std::max<std::uint64_t>(1, (schedule_.steps + samples - 1) / samples);
   };
   schedule_.history_every = std::max<std::uint64_t>(1, every("history"));
   schedule_.frame_every = every("frames");
+  schedule_.checkpoint_every = every("checkpoints");
+  if (setup_.restart)
+    go_on_with_schedule();
 }
 
 void Broker::open_channels() {
   for (Joint& joint : joints_)
     joint.coupling->start(schedule_.time_step);
+  if (setup_.restart)
+    restore_couplings();
   for (Member& m : members_) {
     Schedule schedule = schedule_;
     if (setup_.plan_only)
@@ -380,14 +412,17 @@ void Broker::handle(Member& m, const Message& message) {
       m.step = from_message<Progress>(message).step;
     } else if (message.type == message::error) {
       const auto report = from_message<ErrorReport>(message);
-      const bool has_key = report.kind == ErrorKind::bad_input && !report.key.empty();
-      const std::string key =
-          fmt::format("participants.{}{}{}", m.name, has_key ? "." : "", has_key ? report.key : "");
       if (report.kind == ErrorKind::bad_input)
-        throw RunError(report.kind, key, report.sentence);
+        throw RunError(report.kind, key_in_case(m.name, report.key), report.sentence);
       throw RunError(report.kind, "",
                      fmt::format("participant \"{}\" (pid {}) failed {}: {}", m.name, m.pid,
                                  place(), report.sentence));
+    } else if (message.type == message::checkpoint) {
+      m.checkpoint = from_message<CheckpointReport>(message).step;
+      m.step = m.checkpoint;
+      complete_checkpoint();
+    } else if (message.type == message::condition) {
+      end_early(m, from_message<ConditionMet>(message));
     } else if (message.type == message::finished) {
       if (!setup_.plan_only && (!phase_.empty() || (m.channel && step_ + 1 < schedule_.steps)))
         throw ProtocolError("it finished before the end of the run");
@@ -454,15 +489,14 @@ RunError Broker::last_words(const ParticipantLost& loss) {
   for (const Member& m : members_)
     if (&m != &gone && m.channel)
       others.push_back(m.name);
-  return RunError(
-      ErrorKind::failed, "",
-      fmt::format(
-          "participant \"{}\" (pid {}) {} {}{}. Its log: {}. No checkpoint was written", gone.name,
-          loss.pid(), loss.what(), place_of(gone),
-          gone.channel && !others.empty()
-              ? fmt::format("; {} waited for the forces of that step", fmt::join(others, ", "))
-              : "",
-          log_of(gone).string()));
+  return RunError(ErrorKind::failed, "",
+                  fmt::format("participant \"{}\" (pid {}) {} {}{}. Its log: {}. {}", gone.name,
+                              loss.pid(), loss.what(), place_of(gone),
+                              gone.channel && !others.empty()
+                                  ? fmt::format("; {} waited for the forces of that step",
+                                                fmt::join(others, ", "))
+                                  : "",
+                              log_of(gone).string(), last_checkpoint()));
 }
 
 std::filesystem::path Broker::log_of(const Member& m) const {
@@ -477,7 +511,10 @@ Broker::Member& Broker::member(const std::string& name) {
 }
 
 std::string Broker::place() const {
-  return phase_.empty() ? fmt::format("at step {} of {}", step_, schedule_.steps) : phase_;
+  const bool is_one = members_.size() == 1 && joints_.empty(); // which steps on its own
+  return phase_.empty() ? fmt::format("at step {} of {}", is_one ? members_.front().step : step_,
+                                      schedule_.steps)
+                        : phase_;
 }
 
 std::string Broker::place_of(const Member& m) const {
@@ -501,6 +538,8 @@ nlohmann::json Broker::record() const {
   record["critical_time_step"] = critical_step_;
   record["limited_by"] = limited_by_;
   record["steps"] = schedule_.steps;
+  record["stage_ends"] = schedule_.ends;
+  record["conditions"] = conditions_;
   record["transport"] = setup_.transport;
   for (const Member& m : members_) {
     nlohmann::json& entry = record["participants"][m.name];

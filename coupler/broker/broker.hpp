@@ -36,12 +36,21 @@ private:
   std::string key_;
 };
 
+/// The checkpoint that a run goes on from.
+struct Restart {
+  std::filesystem::path folder;
+  nlohmann::json record; // its checkpoint.json
+};
+
 /// What a run needs beside its case.
 struct RunSetup {
   nlohmann::json settings;          // the case with every default
   std::filesystem::path run_folder; // exists, with the subfolders history and logs
   bool plan_only = false;           // stop before the first step and write nothing
   std::string transport;            // "shm", "zmq", "loopback"
+  nlohmann::json identity{};        // of case and program, kept with each checkpoint
+  std::string version{};            // of kerf
+  std::optional<Restart> restart{}; // nothing: from the start
   /// Called about five times a second with each participant's step.
   std::function<void(const std::string& participant, std::uint64_t step, std::uint64_t steps)>
       progress;
@@ -70,6 +79,10 @@ private:
   void refuse_shared_points() const;
   void collect_limits();
   void choose_time_step();
+  void go_on_with_schedule();
+  void count_stages();
+  void require_stages() const;
+  void end_early(Member& member, const ConditionMet& met);
   void open_channels();
 
   // The steps.
@@ -80,6 +93,18 @@ private:
   std::span<const std::byte> receive_frame(Member& member, FrameKind kind);
   std::span<std::byte> force_frame_of(Member& member);
   void send_forces(Member& member);
+
+  // Checkpoints: the broker adds what it knows itself, and says when one is complete.
+  std::filesystem::path coupling_file(const std::filesystem::path& folder,
+                                      const Joint& joint) const;
+  void require_checkpoints() const;
+  void restore_couplings();
+  bool checkpoint_is_due() const;
+  void write_couplings();
+  void complete_checkpoint();
+  void await_last_checkpoint() noexcept;
+  std::string last_checkpoint() const;
+
   [[noreturn]] void gave_up(const Member& member, const char* expected, const TimeoutError& error);
   Wait patience(); // the hang limit, looking after everybody meanwhile
 
@@ -118,6 +143,10 @@ private:
   double critical_step_ = 0.0; // s
   std::string limited_by_;
   double loop_seconds_ = 0.0;
+  std::uint64_t last_step_ = 0; // that case.end_time allows; the largest number without it
+  nlohmann::json conditions_ = nlohmann::json::array(); // that were met, as run.json keeps them
+  std::uint64_t checkpoint_ = 0;                        // step of the last complete one; 0: none
+  std::uint64_t couplings_written_ = 0;                 // step of the last
 
   std::string phase_;         // where the run is, before its first step
   std::uint64_t step_ = 0;    // n, afterwards

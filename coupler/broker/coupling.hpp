@@ -1,6 +1,7 @@
 // A coupling between two participants, as the broker's step cycle sees it.
 #pragma once
 
+#include "common/state.hpp"
 #include "coupler/channel/bodies.hpp"
 
 #include <memory>
@@ -33,6 +34,18 @@ struct CouplingBook {
   double stored_energy = 0.0;             // in the coupling at this instant, J
   bool finite = true;                     // every force so far was a number
 };
+
+template <class Visit> void visit_parts(CouplingBook& book, Visit& visit) {
+  auto& [momentum_residual, angular_momentum_residual, constraint_violation, work, stored_energy,
+         finite] = book;
+  visit("momentum_residual", momentum_residual);
+  visit("angular_momentum_residual", angular_momentum_residual);
+  visit("constraint_violation", constraint_violation);
+  visit("work_on_particles", work[0]);
+  visit("work_on_mesh", work[1]);
+  visit("stored_energy", stored_energy);
+  visit("finite", finite);
+}
 
 class Coupling {
 public:
@@ -70,6 +83,11 @@ public:
   /// Enters what compute() just gave; need not be ready before the participants go on.
   virtual void enter_books(std::uint64_t step, const Motion& a, const Motion& b,
                            std::span<const double> force_a, std::span<const double> force_b) = 0;
+
+  /// What a restart needs beside the state of the participants, between two steps.
+  virtual State state() const = 0;
+  /// After start(). @throws std::invalid_argument when it is of another coupling
+  virtual void restore(const State& state) = 0;
 
   const CouplingBook& book() const { return book_; }
 

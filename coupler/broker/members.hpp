@@ -16,8 +16,9 @@ struct Broker::Member {
   std::int64_t pid = 0;
   bool answered = false; // what is being collected
   bool finished = false;
-  std::uint64_t step = 0;    // by its own last word
-  Clock::time_point heard{}; // when it last said anything
+  std::uint64_t step = 0;       // by its own last word
+  std::uint64_t checkpoint = 0; // step of the last one that it has written; 0: none
+  Clock::time_point heard{};    // when it last said anything
 
   Declaration declaration;
   Plan plan;

@@ -29,7 +29,17 @@ public:
   void enter_books(std::uint64_t step, const Motion& a, const Motion& b,
                    std::span<const double> force_a, std::span<const double> force_b) override;
 
+  State state() const override;
+  void restore(const State& state) override;
+
 private:
+  /// Everything else is computed anew in each step.
+  template <class Visit> void visit_state(Visit& visit) {
+    visit("book", book_);
+    visit("force_on_particles", last_force_[0]);
+    visit("force_on_mesh", last_force_[1]);
+  }
+
   void set_weights(const Declaration& particles, const std::vector<double>& node_alpha,
                    const std::vector<double>& point_alpha, const std::vector<double>& distance);
   void predict_gap(std::uint64_t step, const Motion& a, const Motion& b);
@@ -176,6 +186,22 @@ template <int dim> void OverlapCoupling<dim>::start(double time_step) {
     last_force_[s].assign(inverse_mass_[s].size(), 0.0);
   if (settings_.lagrange)
     system_.emplace(N_, inverse_mass_[0], inverse_mass_[1]);
+}
+
+template <int dim> State OverlapCoupling<dim>::state() const {
+  State state;
+  StateWriter writer(state);
+  const_cast<OverlapCoupling*>(this)->visit_state(writer); // which only reads
+  return state;
+}
+
+template <int dim> void OverlapCoupling<dim>::restore(const State& state) {
+  const std::size_t sizes[2] = {last_force_[0].size(), last_force_[1].size()};
+  StateReader reader(state);
+  visit_state(reader);
+  reader.finish();
+  if (sizes[0] != last_force_[0].size() || sizes[1] != last_force_[1].size())
+    throw std::invalid_argument("it has another interface");
 }
 
 template <int dim>

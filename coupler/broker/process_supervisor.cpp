@@ -56,8 +56,11 @@ void ProcessSupervisor::start(const Participant::Invitation& invitation) {
 }
 
 void ProcessSupervisor::check() {
-  if (received_signal != 0)
-    throw Interrupted(received_signal);
+  if (received_signal != 0) {
+    const int signal = received_signal;
+    received_signal = 0; // a second one is told again
+    throw Interrupted(signal);
+  }
   for (const Ending& ending : launcher_.ended())
     if (!released_.contains(ending.name))
       throw ParticipantLost(ending.name, ending.pid, ending.sentence());

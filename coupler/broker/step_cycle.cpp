@@ -18,13 +18,20 @@ void Broker::step_loop() {
                                               {"constraint_violation", "m"},
                                               {"work_on_particles", "J"},
                                               {"work_on_mesh", "J"},
-                                              {"stored_energy", "J"}});
+                                              {"stored_energy", "J"}},
+                          schedule_.first_step);
   const auto start = Clock::now();
   for (Member& m : members_)
     m.heard = start;
-  if (!joints_.empty())
-    for (step_ = 0; step_ < schedule_.steps; ++step_)
+  if (!joints_.empty()) {
+    for (step_ = schedule_.first_step; step_ < schedule_.steps; ++step_) {
+      if (checkpoint_is_due())
+        write_couplings();
       cycle();
+    }
+    if (checkpoint_is_due())
+      write_couplings();
+  }
   await_finish();
   loop_seconds_ = std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -163,10 +170,10 @@ void Broker::gave_up(const Member& m, const char* expected, const TimeoutError& 
   throw RunError(
       ErrorKind::failed, "",
       fmt::format("participant \"{}\" (pid {}) {} at step {} of {}; its {} was "
-                  "expected. Its log: {}. No checkpoint was written",
+                  "expected. Its log: {}. {}",
                   m.name, m.pid,
                   closed ? "closed its link" : fmt::format("was silent for {:g} s", limit), step_,
-                  schedule_.steps, expected, log_of(m).string()));
+                  schedule_.steps, expected, log_of(m).string(), last_checkpoint()));
 }
 
 } // namespace kerf::coupler

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <sys/types.h>
+#include <utility>
 
 namespace kerf::coupler {
 
@@ -25,13 +26,16 @@ private:
 /// The user ended the run: Ctrl-C, SIGTERM, or a closed terminal.
 class Interrupted : public std::runtime_error {
 public:
-  /// @param place  where the run was, for example "at step 12 of 200"
-  explicit Interrupted(int signal, const std::string& place = "")
-      : std::runtime_error(place), signal_(signal) {}
+  /// @param place       where the run was, for example "at step 12 of 200"
+  /// @param checkpoint  a sentence about the last one
+  explicit Interrupted(int signal, const std::string& place = "", std::string checkpoint = "")
+      : std::runtime_error(place), signal_(signal), checkpoint_(std::move(checkpoint)) {}
   int signal() const noexcept { return signal_; }
+  const std::string& checkpoint() const noexcept { return checkpoint_; }
 
 private:
   int signal_;
+  std::string checkpoint_;
 };
 
 class Supervisor {

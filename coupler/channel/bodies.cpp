@@ -57,6 +57,7 @@ Message to_message(const Assignment& body) {
                 {"case", object(body.case_settings, "case")},
                 {"run_folder", body.run_folder.string()},
                 {"plan_only", body.plan_only},
+                {"restart", body.restart.string()},
                 {"broker_pid", body.broker_pid}}),
           {}};
 }
@@ -81,7 +82,9 @@ Message to_message(const Declaration& body) {
   message.body = text({{"dimension", body.dimension},
                        {"nodes_per_element", body.nodes_per_element},
                        {"boundary", std::move(tags)},
-                       {"memory_estimate", body.memory_estimate}});
+                       {"memory_estimate", body.memory_estimate},
+                       {"has_checkpoints", body.has_checkpoints},
+                       {"has_stages", body.has_stages}});
   return message;
 }
 
@@ -128,6 +131,9 @@ Message to_message(const Schedule& body) {
                 {"steps", body.steps},
                 {"history_every", body.history_every},
                 {"frame_every", body.frame_every},
+                {"ends", body.ends},
+                {"first_step", body.first_step},
+                {"checkpoint_every", body.checkpoint_every},
                 {"layout", fmt::format("{:016x}", body.layout)}, // JSON readers may lose 64 bits
                 {"channel", std::move(channel)}}),
           {}};
@@ -137,6 +143,20 @@ Message to_message(const Progress& body) {
   return {message::progress,
           text({{"step", body.step}, {"waiting_seconds", body.waiting_seconds}}),
           {}};
+}
+
+Message to_message(const CheckpointReport& body) {
+  return {message::checkpoint, text({{"step", body.step}}), {}};
+}
+
+Message to_message(const ConditionMet& body) {
+  return {message::condition,
+          text({{"step", body.step}, {"name", body.name}, {"value", body.value}}),
+          {}};
+}
+
+Message to_message(const Ends& body) {
+  return {message::ends, text({{"steps", body.steps}, {"ends", body.ends}}), {}};
 }
 
 Message to_message(const Finished& body) {

@@ -32,6 +32,7 @@ struct Assignment {
   std::filesystem::path run_folder; // results go here; files of the case are given as full paths
   bool plan_only = false;           // no step will follow and no file may be written
   std::int64_t broker_pid = 0;      // to name the broker in a sentence about its end
+  std::filesystem::path restart{};  // folder of the checkpoint to go on from; empty: the start
 };
 
 /// What a participant brings. Points are particles or nodes; local index k is row k.
@@ -51,6 +52,8 @@ struct Declaration {
   std::map<std::string, std::vector<std::uint32_t>> boundary;
 
   double memory_estimate = 0.0; // bytes
+  bool has_checkpoints = false; // it writes checkpoints and goes on from them
+  bool has_stages = false;      // it sees to stages and stop conditions
 
   std::size_t num_points() const noexcept { return ids.size(); }
   /// 2 in 2D; in 3D 3 for tet4 and 4 for hex8.
@@ -91,6 +94,11 @@ struct Schedule {
   std::uint64_t steps = 0;         // the run ends at steps * time_step
   std::uint64_t history_every = 1; // a row at every multiple, and at the end
   std::uint64_t frame_every = 0;   // a frame at every multiple, and at the end; 0: none at all
+  /// Steps at which the stages end, ascending; the last one need not be reached. Without stages
+  /// that of the run, or nothing.
+  std::vector<std::uint64_t> ends = {};
+  std::uint64_t first_step = 0;       // where the loop begins: that of the checkpoint
+  std::uint64_t checkpoint_every = 0; // one at every multiple, and at the end; 0: none
   std::uint64_t layout = 0; // FrameLayout::checksum() that both sides must have; 0: no frames
   /// Not to be read by solvers. No transport: the participant has no interface. The descriptor
   /// does not travel: a participant uses the one it inherited, or opens the endpoint.
@@ -101,6 +109,24 @@ struct Schedule {
 struct Progress {
   std::uint64_t step = 0;
   double waiting_seconds = 0.0; // so far, for the broker and so for the others
+};
+
+/// A participant has written its part of a checkpoint.
+struct CheckpointReport {
+  std::uint64_t step = 0; // the one that it goes on with
+};
+
+/// A stop condition is met in a step, which is the last one of the run or the stage.
+struct ConditionMet {
+  std::uint64_t step = 0;
+  std::string name;
+  double value = 0.0; // of the quantity
+};
+
+/// The broker's answer: the schedule from now on.
+struct Ends {
+  std::uint64_t steps = 0;
+  std::vector<std::uint64_t> ends;
 };
 
 /// What a participant says when its loop has ended.
@@ -133,6 +159,9 @@ Message to_message(const Plan& body);
 Message to_message(const Limits& body);
 Message to_message(const Schedule& body);
 Message to_message(const Progress& body);
+Message to_message(const CheckpointReport& body);
+Message to_message(const ConditionMet& body);
+Message to_message(const Ends& body);
 Message to_message(const Finished& body);
 Message to_message(const ErrorReport& body);
 Message to_message(const Stop& body);
@@ -151,6 +180,9 @@ template <> Plan from_message<Plan>(const Message& message);
 template <> Limits from_message<Limits>(const Message& message);
 template <> Schedule from_message<Schedule>(const Message& message);
 template <> Progress from_message<Progress>(const Message& message);
+template <> CheckpointReport from_message<CheckpointReport>(const Message& message);
+template <> ConditionMet from_message<ConditionMet>(const Message& message);
+template <> Ends from_message<Ends>(const Message& message);
 template <> Finished from_message<Finished>(const Message& message);
 template <> ErrorReport from_message<ErrorReport>(const Message& message);
 template <> Stop from_message<Stop>(const Message& message);

@@ -147,6 +147,7 @@ template <> Assignment from_message<Assignment>(const Message& message) {
   body.case_settings = reader.object("case");
   body.run_folder = reader.text("run_folder");
   body.plan_only = reader.flag("plan_only");
+  body.restart = reader.text("restart");
   body.broker_pid = reader.process_id("broker_pid");
   return body;
 }
@@ -170,6 +171,8 @@ template <> Declaration from_message<Declaration>(const Message& message) {
     body.boundary[reader.text_of(tags[i], "boundary")] =
         reader.array<std::uint32_t>(fmt::format("boundary/{}", i));
   body.memory_estimate = reader.not_negative("memory_estimate");
+  body.has_checkpoints = reader.flag("has_checkpoints");
+  body.has_stages = reader.flag("has_stages");
   if (const std::string fault = fault_in(body); !fault.empty())
     reader.fail(fault);
   return body;
@@ -208,6 +211,21 @@ template <> Limits from_message<Limits>(const Message& message) {
   return body;
 }
 
+namespace {
+
+/// @throws ProtocolError unless they ascend
+std::vector<std::uint64_t> read_ends(const Reader& reader) {
+  std::vector<std::uint64_t> ends;
+  for (const json& item : reader.list("ends", 100'000)) {
+    ends.push_back(reader.count_of(item, "ends"));
+    if (ends.size() > 1 && ends.back() < ends[ends.size() - 2])
+      reader.fail("the ends of stages do not ascend");
+  }
+  return ends;
+}
+
+} // namespace
+
 template <> Schedule from_message<Schedule>(const Message& message) {
   const Reader reader(message, message::schedule);
   Schedule body;
@@ -215,6 +233,9 @@ template <> Schedule from_message<Schedule>(const Message& message) {
   body.steps = reader.count("steps");
   body.history_every = reader.count("history_every");
   body.frame_every = reader.count("frame_every");
+  body.ends = read_ends(reader);
+  body.first_step = reader.count("first_step");
+  body.checkpoint_every = reader.count("checkpoint_every");
   if (body.history_every == 0 || (body.steps > 0 && body.time_step == 0.0))
     reader.fail(fmt::format("{} steps of {} s with a history row every {} steps", body.steps,
                             body.time_step, body.history_every));
@@ -239,6 +260,20 @@ template <> Schedule from_message<Schedule>(const Message& message) {
 template <> Progress from_message<Progress>(const Message& message) {
   const Reader reader(message, message::progress);
   return {reader.count("step"), reader.not_negative("waiting_seconds")};
+}
+
+template <> CheckpointReport from_message<CheckpointReport>(const Message& message) {
+  return {Reader(message, message::checkpoint).count("step")};
+}
+
+template <> ConditionMet from_message<ConditionMet>(const Message& message) {
+  const Reader reader(message, message::condition);
+  return {reader.count("step"), reader.text("name"), reader.number("value")};
+}
+
+template <> Ends from_message<Ends>(const Message& message) {
+  const Reader reader(message, message::ends);
+  return {reader.count("steps"), read_ends(reader)};
 }
 
 template <> Finished from_message<Finished>(const Message& message) {

@@ -3,6 +3,7 @@
 #include "common/exit_code.hpp"
 #include "coupler/broker/process_supervisor.hpp"
 #include "coupler/commands/packings.hpp"
+#include "coupler/commands/restart.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +41,8 @@ void say(const std::string& sentence) {
 } // namespace
 
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
-                             bool plan_only, decltype(coupler::RunSetup::progress) progress) {
+                             bool plan_only, decltype(coupler::RunSetup::progress) progress,
+                             std::optional<coupler::Restart> restart) {
   const nlohmann::json settings = with_packings(case_file, run_folder);
   coupler::ProcessSupervisor supervisor(
       settings.at("participants"), std::filesystem::read_symlink("/proc/self/exe").parent_path(),
@@ -49,6 +51,9 @@ nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::p
                           .run_folder = run_folder,
                           .plan_only = plan_only,
                           .transport = settings.at("case").at("transport"),
+                          .identity = identity(case_file),
+                          .version = KERF_VERSION,
+                          .restart = std::move(restart),
                           .progress = std::move(progress)},
                          supervisor);
   try {
@@ -79,9 +84,9 @@ int with_case(const RunOptions& options, const std::function<int(const CaseFile&
   } catch (const coupler::Interrupted& interrupted) {
     const bool by_user = interrupted.signal() == SIGINT;
     say(fmt::format("kerf: the run was ended by {} {}; its histories and frames up to then are "
-                    "kept.",
+                    "kept. {}.",
                     by_user ? "Ctrl-C" : "signal " + std::to_string(interrupted.signal()),
-                    interrupted.what()));
+                    interrupted.what(), interrupted.checkpoint()));
     return by_user ? exit_code::interrupted : exit_code::terminated;
   } catch (const std::exception& error) {
     say(fmt::format("kerf: {}.", error.what()));

@@ -7,6 +7,7 @@
 #include "coupler/commands/commands.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace kerf::commands {
 
@@ -14,7 +15,8 @@ namespace kerf::commands {
 /// @return what run.json keeps
 /// @throws as Broker::run()
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
-                             bool plan_only, decltype(coupler::RunSetup::progress) progress);
+                             bool plan_only, decltype(coupler::RunSetup::progress) progress,
+                             std::optional<coupler::Restart> restart = std::nullopt);
 
 /// Reads the case and does something with it; turns exceptions into one sentence on stderr and an
 /// exit code.

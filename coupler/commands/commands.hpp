@@ -12,6 +12,7 @@ struct RunOptions {
   std::filesystem::path out;          // empty: results/<case>
   std::vector<std::string> overrides; // key=value
   std::string transport;              // empty: what the case says
+  std::string restart;                // folder[@step] of a checkpoint; empty: from the start
 };
 
 /// Launches every participant, brokers the run, writes the results, prints the measures.

@@ -28,7 +28,10 @@ int main(int argc, char** argv) {
   };
   CLI::App* run = app.add_subcommand("run", "Runs a case and writes its results");
   add_case(run);
-  run->add_option("--out", options.out, "Folder of the results [results/<case name>]");
+  run->add_option("--out", options.out, "Folder of the results [results/<case name>, or DIR]");
+  run->add_option("--restart", options.restart,
+                  "Goes on from the last checkpoint of a run, or from that of a step")
+      ->type_name("DIR[@STEP]");
   run->callback([&] { exit_code = kerf::commands::run(options); });
   CLI::App* check = app.add_subcommand("check", "Checks a case and prints its plan, runs nothing");
   add_case(check);

@@ -27,6 +27,12 @@ bool ControlLine::broker_is_gone() {
   return connection_broke_ || lifeline_.cut();
 }
 
+/// Takes what the broker may say at any time and the solver sees to at its next step.
+bool ControlLine::is_order(const Message& message) {
+  wants_checkpoint_ = wants_checkpoint_ || message.type == message::checkpoint;
+  return message.type == message::checkpoint;
+}
+
 Message ControlLine::await(const char* type, Clock::duration limit) {
   const auto deadline = Clock::now() + limit;
   for (;;) {
@@ -35,7 +41,8 @@ Message ControlLine::await(const char* type, Clock::duration limit) {
     if (auto message = client_.receive(gone ? no_time : slice)) {
       if (message->type == type)
         return std::move(*message);
-      throw_unexpected(*message);
+      if (!is_order(*message))
+        throw_unexpected(*message);
     }
     if (gone)
       throw RunStopped(lifeline_.sentence());
@@ -51,7 +58,7 @@ void ControlLine::await_stop() {
 
 void ControlLine::attend(const Progress& progress) {
   const bool gone = broker_is_gone();
-  if (const auto message = client_.receive(no_time))
+  if (const auto message = client_.receive(no_time); message && !is_order(*message))
     throw_unexpected(*message);
   if (gone)
     throw RunStopped(lifeline_.sentence());

@@ -35,17 +35,22 @@ public:
       attend(progress);
   }
 
+  /// True when the broker wants a checkpoint, after which the run stops.
+  bool wants_checkpoint() const noexcept { return wants_checkpoint_; }
+
   Lifeline& lifeline() noexcept { return lifeline_; }
 
 private:
   static constexpr auto between_reports = std::chrono::milliseconds(100);
 
   bool broker_is_gone();
+  bool is_order(const Message& message);
 
   std::string endpoint_;
   Lifeline lifeline_;
   ControlClient client_;
   bool connection_broke_ = false;
+  bool wants_checkpoint_ = false;
   Clock::time_point last_report_{};
 };
 

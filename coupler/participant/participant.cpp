@@ -137,6 +137,7 @@ const Schedule& Participant::initialize(const Limits& limits) {
     throw std::invalid_argument("initialize(): " + fault);
   s.control.send(to_message(limits));
   s.schedule = from_message<Schedule>(s.control.await(message::schedule, forever));
+  s.step = s.schedule.first_step;
   s.open_channel();
   s.phase = State::Phase::ready;
   return s.schedule;
@@ -193,6 +194,62 @@ std::uint64_t Participant::step() const {
 
 double Participant::time() const {
   return static_cast<double>(state_->step) * state_->schedule.time_step;
+}
+
+bool Participant::checkpoint_is_due() const {
+  const auto& s = *state_;
+  const std::uint64_t every = s.schedule.checkpoint_every;
+  const bool is_over = s.phase == State::Phase::over;
+  return (s.control.wants_checkpoint() && s.step > 0) ||
+         (every != 0 && s.step > s.schedule.first_step && (is_over || s.step % every == 0));
+}
+
+std::size_t Participant::stage() const {
+  return stage_before(state_->step + 1);
+}
+
+std::uint64_t Participant::stage_begin() const {
+  const std::size_t k = stage();
+  return k == 0 ? 0 : state_->schedule.ends[k - 1];
+}
+
+std::size_t Participant::stage_before(std::uint64_t step) const {
+  const std::vector<std::uint64_t>& ends = state_->schedule.ends;
+  std::size_t k = 0;
+  while (k + 1 < ends.size() && ends[k] < step)
+    ++k;
+  return k;
+}
+
+void Participant::report_condition(const std::string& name, double value) {
+  auto& s = *state_;
+  s.require(s.phase == State::Phase::received, "report_condition() comes after receive()");
+  s.control.send(to_message(ConditionMet{s.step, name, value}));
+  const auto ends = from_message<Ends>(s.control.await(message::ends, forever));
+  if (ends.steps <= s.step)
+    throw ProtocolError(fmt::format("the broker ends the run at step {}, before the one of now, {}",
+                                    ends.steps, s.step));
+  s.schedule.steps = ends.steps;
+  s.schedule.ends = ends.ends;
+}
+
+std::filesystem::path Participant::checkpoint_file() const {
+  return state_->assignment.run_folder / "checkpoints" / fmt::format("{:09}", step()) /
+         (state_->assignment.name + ".h5");
+}
+
+std::filesystem::path Participant::restart_file() const {
+  const std::filesystem::path& folder = state_->assignment.restart;
+  return folder.empty() ? folder : folder / (state_->assignment.name + ".h5");
+}
+
+void Participant::report_checkpoint() {
+  auto& s = *state_;
+  s.require(s.phase == State::Phase::began || s.phase == State::Phase::over,
+            "report_checkpoint() comes before publish_motion()");
+  s.control.send(to_message(CheckpointReport{s.step}));
+  if (s.control.wants_checkpoint())
+    s.control.await_stop();
 }
 
 std::span<double> Participant::State::outgoing(FrameKind kind, std::size_t interface, Field field) {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -39,6 +40,7 @@ private:
 ///     const Plan& plan = me.declare(…);
 ///     const Schedule& schedule = me.initialize(…);
 ///     while (me.has_next_step()) {
+///       if (me.checkpoint_is_due()) { …; me.report_checkpoint(); } // who has_checkpoints
 ///       … write me.position(i), me.velocity(i);    me.publish_motion();
 ///       … own forces, write me.own_forces(i);      me.publish_forces();
 ///       me.receive();                              … read me.interface_forces(i), integrate
@@ -78,6 +80,26 @@ public:
   bool has_next_step();
   std::uint64_t step() const; // n of the current step, from 0
   double time() const;        // n * time_step, s
+
+  /// True when the state of the beginning of this step is to be written before the step is made:
+  /// every few steps, at the end of the loop, and before the broker stops the run.
+  bool checkpoint_is_due() const;
+  /// Where to write it: "<run folder>/checkpoints/<step>/<name>.h5".
+  std::filesystem::path checkpoint_file() const;
+  /// Where to go on from; empty when the run begins at its start.
+  std::filesystem::path restart_file() const;
+  /// Says that the checkpoint of this step is complete.
+  /// @throws RunStopped when it was the last thing that the broker wanted
+  void report_checkpoint();
+
+  /// Stage of the current step, from 0; its first step, at which its changes are made.
+  std::size_t stage() const;
+  std::uint64_t stage_begin() const;
+  /// Stage of the step before this one; 0 before the first.
+  std::size_t stage_before(std::uint64_t step) const;
+  /// Says, after integrating a step, that it meets a stop condition. The broker then ends the run
+  /// or the stage, and steps() and the stages change.
+  void report_condition(const std::string& name, double value);
 
   // The spans point into the frame of this step: write them before it is published, and ask for
   // them anew in the next step.

@@ -33,10 +33,13 @@ inline constexpr const char* plan = "plan";               // B: weights and inte
 inline constexpr const char* limits = "limits";           // P: inverse masses, row sums, own limit
 inline constexpr const char* schedule = "schedule"; // B: time step, steps, channel; the loop starts
 inline constexpr const char* progress = "progress"; // P: step reached, at most every 0.1 s
-inline constexpr const char* finished = "finished"; // P: the loop has ended, with its summary
-inline constexpr const char* goodbye = "goodbye";   // B: everyone has finished
-inline constexpr const char* error = "error";       // P: it cannot go on, and why
-inline constexpr const char* stop = "stop";         // B: end at once, and the reason
+inline constexpr const char* checkpoint = "checkpoint"; // P: it has one; B: write one, then stop
+inline constexpr const char* condition = "condition";   // P: a stop condition is met in this step
+inline constexpr const char* ends = "ends";             // B: when stages and run end now
+inline constexpr const char* finished = "finished";     // P: the loop has ended, with its summary
+inline constexpr const char* goodbye = "goodbye";       // B: everyone has finished
+inline constexpr const char* error = "error";           // P: it cannot go on, and why
+inline constexpr const char* stop = "stop";             // B: end at once, and the reason
 } // namespace message
 
 /// Why a participant or a run ended early.

@@ -21,7 +21,13 @@ template <int dim> std::vector<Column> columns() {
 } // namespace
 
 template <int dim>
-CrackFile<dim>::CrackFile(const std::filesystem::path& path) : file_(path, columns<dim>()) {}
+CrackFile<dim>::CrackFile(const std::filesystem::path& path, std::uint64_t first_step,
+                          std::span<const Crack<dim>> before)
+    : file_(path, columns<dim>(), first_step), written_(before.size()),
+      tension_(static_cast<std::size_t>(
+          std::count_if(before.begin(), before.end(), [](const Crack<dim>& crack) {
+            return crack.mode == BreakMode::tension;
+          }))) {}
 
 template <int dim>
 void CrackFile<dim>::write(std::span<const Crack<dim>> all, std::span<const std::uint32_t> ids) {

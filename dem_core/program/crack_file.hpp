@@ -4,6 +4,7 @@
 #include "common/history.hpp"
 #include "dem_core/crack.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 
@@ -11,7 +12,10 @@ namespace kerf::dem {
 
 template <int dim> class CrackFile {
 public:
-  explicit CrackFile(const std::filesystem::path& path);
+  /// @param first_step  of this run
+  /// @param before      cracks that are in the file already
+  CrackFile(const std::filesystem::path& path, std::uint64_t first_step,
+            std::span<const Crack<dim>> before);
 
   /// Appends the cracks that are not in the file yet, with the ids of their particles.
   /// @param all  every crack since the start

@@ -1,6 +1,8 @@
 #include "dem_core/program/dem_output.hpp"
 
+#include "common/checkpoint.hpp"
 #include "common/stopwatch.hpp"
+#include "dem_core/balance.hpp"
 #include "dem_core/program/dem_frame.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +14,7 @@ namespace kerf::dem {
 
 namespace {
 
-template <int dim> std::vector<Column> history_columns() {
+template <int dim> std::vector<Column> history_columns(bool has_stages) {
   std::vector<Column> columns = {{"step", "1"},
                                  {"time", "s"},
                                  {"kinetic_energy", "J"},
@@ -30,10 +32,13 @@ template <int dim> std::vector<Column> history_columns() {
                                  {"fragments", "1"},
                                  {"largest_fragment", "1"},
                                  {"unbalanced_force", "1"},
+                                 {"kinetic_ratio", "1"},
                                  {"momentum_x", "N s"},
                                  {"momentum_y", "N s"}};
   if (dim == 3)
     columns.push_back({"momentum_z", "N s"});
+  if (has_stages)
+    columns.push_back({"stage", "1"});
   return columns;
 }
 
@@ -42,12 +47,16 @@ template <int dim> std::vector<Column> history_columns() {
 template <int dim>
 DemOutput<dim>::DemOutput(Engine<dim>& engine, const Watch<dim>& watch,
                           const std::filesystem::path& run_folder, const std::string& name)
-    : engine_(engine), frames_(run_folder, name, dim),
-      history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()),
-      cracks_(run_folder / "history" / (name + "_cracks.csv")), tools_(engine, run_folder, name),
-      domain_(watch.domain), fragments_(find_fragments(engine.contacts(), engine.particles())) {
+    : engine_(engine), frames_(run_folder, name, dim, engine.step()),
+      history_(run_folder / "history" / (name + ".csv"), history_columns<dim>(watch.has_stages),
+               engine.step()),
+      cracks_(run_folder / "history" / (name + "_cracks.csv"), engine.step(), engine.cracks()),
+      tools_(engine, run_folder, name), domain_(watch.domain),
+      stage_(watch.has_stages ? std::optional<std::size_t>(0) : std::nullopt),
+      fragments_(find_fragments(engine.contacts(), engine.particles())) {
   for (const Probe<dim>& probe : watch.probes)
-    probes_.emplace_back(run_folder / "history" / (name + "_" + probe.name + ".csv"), probe.box);
+    probes_.emplace_back(run_folder / "history" / (name + "_" + probe.name + ".csv"), probe.box,
+                         engine.step());
 }
 
 template <int dim> void DemOutput<dim>::write_frame(std::uint64_t step, double time) {
@@ -81,9 +90,12 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
                              static_cast<double>(cracks_.shear()),
                              static_cast<double>(fragments().count()),
                              fragments().largest_share(),
-                             engine_.unbalanced_force()};
+                             engine_.unbalanced_force(),
+                             kinetic_ratio(e)};
   const Vec<dim> momentum = engine_.momentum();
   row.insert(row.end(), momentum.begin(), momentum.end());
+  if (stage_)
+    row.push_back(static_cast<double>(*stage_));
   history_.append(row);
   tools_.write_history(step, time);
   for (ProbeFile<dim>& probe : probes_)
@@ -93,6 +105,11 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
 template <int dim> void DemOutput<dim>::write_cracks() {
   const Stopwatch stopwatch(seconds_);
   cracks_.write(engine_.cracks(), engine_.particles().ids);
+}
+
+template <int dim> void DemOutput<dim>::write_checkpoint(const std::filesystem::path& file) {
+  const Stopwatch stopwatch(seconds_);
+  kerf::write_checkpoint(file, {checkpoint_writer, engine_.step(), engine_.state()});
 }
 
 template <int dim> void DemOutput<dim>::check(std::uint64_t step, double time) const {
@@ -113,9 +130,10 @@ template <int dim> void DemOutput<dim>::check(std::uint64_t step, double time) c
 
 /// They change with the bonds only.
 template <int dim> const Fragments& DemOutput<dim>::fragments() {
-  if (cracks_of_fragments_ != engine_.cracks().size()) {
+  const std::pair bonds{engine_.cracks().size(), engine_.bonds_at_start()};
+  if (bonds_of_fragments_ != bonds) {
     fragments_ = find_fragments(engine_.contacts(), engine_.particles());
-    cracks_of_fragments_ = engine_.cracks().size();
+    bonds_of_fragments_ = bonds;
   }
   return fragments_;
 }

@@ -16,10 +16,13 @@
 
 namespace kerf::dem {
 
+/// Program and version that a checkpoint names.
+inline constexpr const char* checkpoint_writer = "kerf-dem " KERF_VERSION;
+
 template <int dim> class DemOutput {
 public:
   /// Makes history/<name>.csv, <name>_cracks.csv and <name>_<probe>.csv; frames come with
-  /// write_frame().
+  /// write_frame(). Goes on with them when the engine does not begin with step 0.
   DemOutput(Engine<dim>& engine, const Watch<dim>& watch, const std::filesystem::path& run_folder,
             const std::string& name);
 
@@ -36,6 +39,12 @@ public:
   /// The bonds that broke since the last call.
   void write_cracks();
 
+  /// The state between two steps.
+  void write_checkpoint(const std::filesystem::path& file);
+
+  /// Of the rows from now on.
+  void set_stage(std::size_t stage) { stage_ = stage; }
+
   double seconds() const noexcept { return seconds_; } // spent here, but for the forces
 
 private:
@@ -49,8 +58,10 @@ private:
   std::vector<ProbeFile<dim>> probes_;
   ToolOutput<dim> tools_;
   std::optional<Box<dim>> domain_;
+  std::optional<std::size_t> stage_; // in a run with stages
   Fragments fragments_;
-  std::size_t cracks_of_fragments_ = 0; // that there were when they were found
+  /// Cracks and bonds made, when they were found.
+  std::pair<std::size_t, std::size_t> bonds_of_fragments_{};
   double seconds_ = 0.0;
 };
 

@@ -1,10 +1,12 @@
 #include "dem_core/program/dem_participant.hpp"
 
+#include "common/checkpoint.hpp"
 #include "common/stopwatch.hpp"
 #include "coupler/participant/run_engine.hpp"
 #include "dem_core/engine.hpp"
 #include "dem_core/program/dem_output.hpp"
 #include "dem_core/program/read_settings.hpp"
+#include "dem_core/program/stages.hpp"
 #include "dem_core/spatial_order.hpp"
 
 #include <fmt/format.h>
@@ -27,8 +29,20 @@ using nlohmann::json;
 template <int dim> class RecordedEngine {
 public:
   /// @param time_step  that must stay below the critical one, s; nothing: no matter
-  RecordedEngine(Engine<dim>& engine, DemOutput<dim>& output, std::optional<double> time_step)
-      : engine_(engine), output_(output), time_step_(time_step) {}
+  RecordedEngine(Engine<dim>& engine, DemOutput<dim>& output, Stages<dim>& stages,
+                 std::optional<double> time_step)
+      : engine_(engine), output_(output), stages_(stages), time_step_(time_step) {}
+
+  void begin_stage(std::size_t stage) {
+    if (stages_.size() == 0)
+      return;
+    stages_.begin(stage);
+    output_.set_stage(stage);
+  }
+  /// The condition that the step which has just been integrated meets.
+  std::optional<Met> met(std::size_t stage, std::uint64_t begin) const {
+    return stages_.met(stage, begin);
+  }
 
   void motion(std::span<const std::uint32_t> points, std::span<double> position,
               std::span<double> velocity) const {
@@ -38,7 +52,8 @@ public:
     {
       const Stopwatch stopwatch(force_seconds);
       engine_.compute_own_forces();
-      if (time_step_ && (step_++ % steps_between_checks == 0 || engine_.renewals() != renewals_))
+      if (time_step_ &&
+          (engine_.step() % steps_between_checks == 0 || engine_.renewals() != renewals_))
         check_step();
     }
     output_.write_cracks();
@@ -73,8 +88,8 @@ private:
 
   Engine<dim>& engine_;
   DemOutput<dim>& output_;
+  Stages<dim>& stages_;
   std::optional<double> time_step_;
-  std::uint64_t step_ = 0;
   std::size_t renewals_ = 0;
 };
 
@@ -98,6 +113,7 @@ template <int dim> coupler::Declaration declare(const Engine<dim>& engine) {
   d.stiffness = engine.stiffness();
   d.radii = p.radius;
   d.memory_estimate = engine.memory();
+  d.has_checkpoints = d.has_stages = true;
   return d;
 }
 
@@ -117,10 +133,39 @@ template <int dim> coupler::Limits limits_of(const Engine<dim>& engine, const co
   return limits;
 }
 
+/// The one to go on from, if any; read before anything is built on it.
+std::optional<Checkpoint> read_restart(const coupler::Participant& broker) {
+  const std::filesystem::path file = broker.restart_file();
+  if (file.empty())
+    return std::nullopt;
+  try {
+    return read_checkpoint(file, checkpoint_writer);
+  } catch (const CheckpointError& error) {
+    throw SettingsError(
+        "", fmt::format("{}\ngo on from another one, with --restart DIR@STEP", error.what()));
+  }
+}
+
+/// Before the broker sees to a run that goes on from it.
+template <int dim> void check(const Engine<dim>& engine, const Checkpoint& checkpoint) {
+  try {
+    engine.check_model(checkpoint.state);
+  } catch (const std::invalid_argument& error) {
+    throw SettingsError("", fmt::format("the checkpoint does not fit the case: {}\ngo on from a "
+                                        "checkpoint of this case",
+                                        error.what()));
+  }
+}
+
 template <int dim>
 int run(coupler::Participant& broker, const json& table, const json& case_table) {
-  const Watch<dim> watch = read_watch<dim>(table);
+  Watch<dim> watch = read_watch<dim>(table);
+  const std::optional<Checkpoint> checkpoint = read_restart(broker);
   Engine<dim> engine = make_engine<dim>(table, case_table);
+  Stages<dim> stages(table, engine, watch.probes);
+  watch.has_stages = stages.size() > 0;
+  if (checkpoint)
+    check(engine, *checkpoint);
   const coupler::Plan& plan = broker.declare(declare(engine));
   engine.set_weights(plan.weights);
   const coupler::Schedule& schedule = broker.initialize(limits_of(engine, plan));
@@ -131,9 +176,16 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
     return 0;
   }
   engine.start(schedule.time_step);
+  const std::size_t stage = broker.stage_before(schedule.first_step);
+  if (checkpoint) {
+    stages.adopt(stage);
+    engine.restore(checkpoint->state);
+  }
   DemOutput<dim> output(engine, watch, assignment.run_folder, assignment.name);
+  if (watch.has_stages)
+    output.set_stage(stage);
   RecordedEngine<dim> recorded(
-      engine, output,
+      engine, output, stages,
       case_table.value("allow_unstable", false) ? std::nullopt : std::optional(schedule.time_step));
   coupler::run_engine(recorded, broker, plan, schedule, output);
 

@@ -28,8 +28,9 @@ template <int dim> std::vector<Column> columns() {
 } // namespace
 
 template <int dim>
-ProbeFile<dim>::ProbeFile(const std::filesystem::path& path, const Box<dim>& box)
-    : box_(box), file_(path, columns<dim>()) {}
+ProbeFile<dim>::ProbeFile(const std::filesystem::path& path, const Box<dim>& box,
+                          std::uint64_t first_step)
+    : box_(box), file_(path, columns<dim>(), first_step) {}
 
 template <int dim>
 void ProbeFile<dim>::write(std::uint64_t step, double time, const Engine<dim>& engine) {

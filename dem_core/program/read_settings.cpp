@@ -87,6 +87,11 @@ Material read_material(const Node& node) {
   return m;
 }
 
+Damping read_damping(const Node& node) {
+  return {node["kind"].one_of(damping_kinds), node["translation"].share(),
+          node["rotation"].share()};
+}
+
 template <int dim> std::uint8_t read_components(const Node& node) {
   unsigned components = 0;
   if (node.is_null())
@@ -179,11 +184,8 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
   s.gap_tolerance = read_gap_tolerance<dim>(node["bonds"], s);
   if (const Node rule = node["bonds"]["shear_increment"]; !rule.is_null())
     s.shear_increment = rule.one_of(shear_increments);
-  if (const Node damping = node["damping"]; !damping.is_null()) {
-    s.damping.kind = damping["kind"].one_of(damping_kinds);
-    s.damping.translation = damping["translation"].share();
-    s.damping.rotation = damping["rotation"].share();
-  }
+  if (const Node damping = node["damping"]; !damping.is_null())
+    s.damping = read_damping(damping);
   for (std::size_t k = 0; k < node["boundary"].size(); ++k)
     s.boundary.push_back(read_prescription<dim>(node["boundary"][k]));
   for (std::size_t k = 0; k < node["initial"].size(); ++k)
@@ -204,6 +206,33 @@ template <int dim> Watch<dim> read_watch(const nlohmann::json& table) {
   return watch;
 }
 
+template <int dim> Change<dim> read_change(const Node& node, const Engine<dim>& engine) {
+  Change<dim> change;
+  if (const Node damping = node["damping"]; !damping.is_null())
+    change.damping = read_damping(damping);
+  if (const Node gravity = node["gravity"]; !gravity.is_null())
+    change.gravity = gravity.vector<dim>();
+  if (const Node friction = node["friction"]; !friction.is_null())
+    change.friction = friction.not_negative_or(0.0);
+  if (const Node gap = node["bond_gap"]; !gap.is_null())
+    change.bond_gap = gap.not_negative_or(0.0);
+  if (node["boundary"].size() > 0 || node["release"].flag())
+    change.boundary.emplace();
+  for (std::size_t k = 0; k < node["boundary"].size(); ++k)
+    change.boundary->push_back(read_prescription<dim>(node["boundary"][k]));
+  for (std::size_t k = 0; k < node["tools"].size(); ++k) {
+    const Node tool = node["tools"][k];
+    std::size_t index = 0;
+    while (index < engine.tools().size() && engine.tool_name(index) != tool["name"].text())
+      ++index;
+    if (index == engine.tools().size())
+      tool["name"].fail(fmt::format("there is no tool \"{}\"", tool["name"].text()));
+    const Tool<dim>& now = engine.tools()[index];
+    change.tools.emplace_back(index, read_motion<dim>(tool, now.pose().start, now.axis()));
+  }
+  return change;
+}
+
 std::optional<int> read_threads(const nlohmann::json& table) {
   const Node node = Node(table, "")["threads"];
   const auto found = table.find("threads");
@@ -216,6 +245,8 @@ std::optional<int> read_threads(const nlohmann::json& table) {
 
 template Settings<2> read_settings<2>(const nlohmann::json&, const nlohmann::json&);
 template Settings<3> read_settings<3>(const nlohmann::json&, const nlohmann::json&);
+template Change<2> read_change<2>(const Node&, const Engine<2>&);
+template Change<3> read_change<3>(const Node&, const Engine<3>&);
 template Watch<2> read_watch<2>(const nlohmann::json&);
 template Watch<3> read_watch<3>(const nlohmann::json&);
 

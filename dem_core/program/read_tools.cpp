@@ -91,10 +91,13 @@ template <int dim> FreeTranslation<dim> read_free(const Node& node) {
   return free;
 }
 
-template <int dim> ToolMotion<dim> read_motion(const Node& tool, const ToolShape<dim>& shape) {
+} // namespace
+
+template <int dim>
+ToolMotion<dim> read_motion(const Node& tool, const Vec<dim>& reference, const Rot<dim>& axis) {
   ToolMotion<dim> motion;
-  motion.reference =
-      tool["reference"].is_null() ? middle(tool, shape) : tool["reference"].vector<dim>();
+  motion.reference = reference;
+  motion.axis = axis;
   const Vec<dim> velocity = tool["velocity"].vector_or_zero<dim>();
   const Node velocities = tool["velocities"];
   for (std::size_t a = 0; a < dim; ++a)
@@ -103,7 +106,8 @@ template <int dim> ToolMotion<dim> read_motion(const Node& tool, const ToolShape
   if (const Node rotation = tool["rotation"]; !rotation.is_null()) {
     motion.rotation_rate = read_value_or_table(rotation["rate"], rotation["rates"]);
     if constexpr (dim == 3)
-      motion.axis = rotation["axis"].vector<3>();
+      if (!rotation["axis"].is_null())
+        motion.axis = rotation["axis"].vector<3>();
   }
   if (const Node servo = tool["servo"]; !servo.is_null())
     motion.servo = Servo<dim>{servo["direction"].vector<dim>(),
@@ -121,9 +125,14 @@ template <int dim> ToolMotion<dim> read_motion(const Node& tool, const ToolShape
   return motion;
 }
 
+namespace {
+
 template <int dim> ToolSettings<dim> read_tool(const Node& tool) {
   ToolShape<dim> shape = read_shape<dim>(tool);
-  ToolMotion<dim> motion = read_motion(tool, shape);
+  const Node reference = tool["reference"];
+  ToolMotion<dim> motion =
+      read_motion<dim>(tool, reference.is_null() ? middle(tool, shape) : reference.vector<dim>(),
+                       ToolMotion<dim>().axis);
   return {tool["name"].text(), std::move(shape), std::move(motion),
           WallMaterial{.normal_stiffness = tool["normal_stiffness"].positive(),
                        .tangential_stiffness = tool["tangential_stiffness"].not_negative_or(0.0),
@@ -140,6 +149,8 @@ template <int dim> std::vector<ToolSettings<dim>> read_tools(const Node& list) {
   return tools;
 }
 
+template ToolMotion<2> read_motion<2>(const Node&, const Vec<2>&, const Rot<2>&);
+template ToolMotion<3> read_motion<3>(const Node&, const Vec<3>&, const Rot<3>&);
 template std::vector<ToolSettings<2>> read_tools<2>(const Node&);
 template std::vector<ToolSettings<3>> read_tools<3>(const Node&);
 

@@ -12,4 +12,10 @@ namespace kerf::dem {
 /// @throws coupler::SettingsError
 template <int dim> std::vector<ToolSettings<dim>> read_tools(const Node& list);
 
+/// The motion of a tool: of its table, or of one that changes it.
+/// @param reference  the point at the start, m
+/// @param axis       where the table gives none
+template <int dim>
+ToolMotion<dim> read_motion(const Node& tool, const Vec<dim>& reference, const Rot<dim>& axis);
+
 } // namespace kerf::dem

@@ -31,7 +31,7 @@ ToolOutput<dim>::ToolOutput(const Engine<dim>& engine, const std::filesystem::pa
   for (std::size_t k = 0; k < engine_.tools().size(); ++k)
     histories_.emplace_back(run_folder / "history" /
                                 (participant + "_" + engine_.tool_name(k) + ".csv"),
-                            columns<dim>());
+                            columns<dim>(), engine_.step());
 }
 
 template <int dim> void ToolOutput<dim>::add_grids(std::vector<Grid>& grids) {

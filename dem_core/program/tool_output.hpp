@@ -13,7 +13,7 @@ namespace kerf::dem {
 
 template <int dim> class ToolOutput {
 public:
-  /// Makes history/<participant>_<tool>.csv for each tool.
+  /// Makes history/<participant>_<tool>.csv for each tool, or goes on with it when the engine does.
   ToolOutput(const Engine<dim>& engine, const std::filesystem::path& run_folder,
              const std::string& participant);
 

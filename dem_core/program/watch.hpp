@@ -11,6 +11,7 @@ namespace kerf::dem {
 template <int dim> struct Watch {
   std::vector<Probe<dim>> probes;
   std::optional<Box<dim>> domain; // that no particle may leave
+  bool has_stages = false;        // then histories say which one it is
 };
 
 } // namespace kerf::dem

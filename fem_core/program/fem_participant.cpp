@@ -1,5 +1,6 @@
 #include "fem_core/program/fem_participant.hpp"
 
+#include "common/checkpoint.hpp"
 #include "coupler/participant/run_engine.hpp"
 #include "fem_core/engine.hpp"
 #include "fem_core/input_error.hpp"
@@ -36,6 +37,7 @@ template <int dim> coupler::Declaration declare(const Mesh<dim>& mesh) {
   declaration.boundary = mesh.boundary;
   declaration.memory_estimate = per_element * static_cast<double>(mesh.num_elements()) +
                                 per_node * static_cast<double>(mesh.num_nodes());
+  declaration.has_checkpoints = true;
   return declaration;
 }
 
@@ -52,11 +54,39 @@ template <int dim> coupler::Limits limits(const Engine<dim>& engine, const coupl
   return limits;
 }
 
+/// The one to go on from, if any; read before anything is built on it.
+std::optional<Checkpoint> read_restart(const coupler::Participant& participant) {
+  const std::filesystem::path file = participant.restart_file();
+  if (file.empty())
+    return std::nullopt;
+  try {
+    return read_checkpoint(file, checkpoint_writer);
+  } catch (const CheckpointError& error) {
+    throw coupler::SettingsError(
+        "", fmt::format("{}\ngo on from another one, with --restart DIR@STEP", error.what()));
+  }
+}
+
+/// Before the broker sees to a run that goes on from it.
+template <int dim> void check(const Engine<dim>& engine, const Checkpoint& checkpoint) {
+  try {
+    engine.check_model(checkpoint.state);
+  } catch (const std::invalid_argument& error) {
+    throw coupler::SettingsError(
+        "", fmt::format("the checkpoint does not fit the case: {}\ngo on from a "
+                        "checkpoint of this case",
+                        error.what()));
+  }
+}
+
 template <int dim>
 void run(coupler::Participant& participant, const Table& settings, const Table& case_settings) {
   const auto begin = Clock::now();
+  const std::optional<Checkpoint> checkpoint = read_restart(participant);
   const Mesh<dim> mesh = read_mesh(settings, read_period<dim>(case_settings));
   Engine<dim> engine(mesh, read_settings(settings, mesh));
+  if (checkpoint)
+    check(engine, *checkpoint);
   const coupler::Plan& plan = participant.declare(declare(mesh));
   engine.set_weights(plan.weights);
   const coupler::Schedule& schedule = participant.initialize(limits(engine, plan));
@@ -66,6 +96,8 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
     return;
   }
   engine.start(schedule.time_step);
+  if (checkpoint)
+    engine.restore(checkpoint->state);
   Output<dim> output(engine, plan.weights, assignment.run_folder, assignment.name);
   const double setup = seconds_since(begin);
   coupler::run_engine(engine, participant, plan, schedule, output);

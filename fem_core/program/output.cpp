@@ -1,5 +1,6 @@
 #include "fem_core/program/output.hpp"
 
+#include "common/checkpoint.hpp"
 #include "common/stopwatch.hpp"
 
 #include <fmt/format.h>
@@ -46,8 +47,9 @@ template <int dim>
 Output<dim>::Output(const Engine<dim>& engine, std::vector<double> alpha,
                     const std::filesystem::path& run_folder, const std::string& participant)
     : engine_(engine), alpha_(std::move(alpha)), ids_(engine.mesh().num_nodes()),
-      frames_(run_folder, participant, dim),
-      history_(run_folder / "history" / (participant + ".csv"), history_columns<dim>()) {
+      frames_(run_folder, participant, dim, engine.step()),
+      history_(run_folder / "history" / (participant + ".csv"), history_columns<dim>(),
+               engine.step()) {
   if (alpha_.empty())
     alpha_.assign(ids_.size(), 1.0);
   std::iota(ids_.begin(), ids_.end(), 0);
@@ -105,6 +107,11 @@ template <int dim> void Output<dim>::write_history(std::uint64_t step, double ti
         fmt::format("the energies are not finite numbers at t = {} s (step {}); node {} is fastest",
                     time, step, fastest_node<dim>(engine_.velocity())));
   history_.append(row);
+}
+
+template <int dim> void Output<dim>::write_checkpoint(const std::filesystem::path& file) {
+  const Stopwatch stopwatch(seconds_);
+  kerf::write_checkpoint(file, {checkpoint_writer, engine_.step(), engine_.state()});
 }
 
 template <int dim> void Output<dim>::check_finite(std::uint64_t step, double time) const {

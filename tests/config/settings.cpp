@@ -21,7 +21,8 @@ TEST(Settings, every_default_is_filled_in) {
   EXPECT_EQ(run["time_step_factor"], 0.8);
   EXPECT_EQ(run["seed"], 1);
   EXPECT_EQ(run["periodic"], (json{{"x", nullptr}, {"y", nullptr}, {"z", nullptr}}));
-  EXPECT_EQ(run["output"], (json{{"frames", 20}, {"history", 200}}));
+  EXPECT_EQ(run["output"],
+            (json{{"frames", 20}, {"history", 200}, {"checkpoints", 0}, {"keep_checkpoints", 2}}));
   const json& rock = settings["participants"]["rock"];
   EXPECT_EQ(rock["solver"], "kerf-dem");
   EXPECT_EQ(rock["bonds"]["gap_tolerance"], 1e-3);

@@ -1,6 +1,7 @@
 # dem_tests - the particle engine: its parts, its mathematics, its settings.
 add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_boundary.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_change.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_contact.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_cracks.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_damping.cpp
@@ -10,6 +11,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_order.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_packing.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_settings.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_state.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_wall_contacts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_beam.cpp

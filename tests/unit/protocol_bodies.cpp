@@ -46,6 +46,7 @@ Declaration triangle() {
   d.elements = {0, 1, 2};
   d.boundary = {{"bottom", {0, 1}}, {"left \"side\"", {2, 0}}};
   d.memory_estimate = 123;
+  d.has_checkpoints = true;
   return d;
 }
 
@@ -66,13 +67,14 @@ TEST(Bodies, of_the_handshake_survive_the_wire) {
   EXPECT_EQ(hello.pid, 42);
   EXPECT_EQ(hello.program, "x 1");
 
-  const Assignment assignment =
-      over_the_wire(Assignment{"rock", R"({"a": [1, 2]})", R"({"b": 0.1})", "/a b", true, 17});
+  const Assignment assignment = over_the_wire(
+      Assignment{"rock", R"({"a": [1, 2]})", R"({"b": 0.1})", "/a b", true, 17, "/c d"});
   EXPECT_EQ(json::parse(assignment.settings), json::parse(R"({"a": [1, 2]})"));
   EXPECT_EQ(json::parse(assignment.case_settings)["b"], 0.1);
   EXPECT_EQ(assignment.run_folder, "/a b");
   EXPECT_TRUE(assignment.plan_only);
   EXPECT_EQ(assignment.broker_pid, 17);
+  EXPECT_EQ(assignment.restart, "/c d");
 }
 
 TEST(Bodies, of_declarations_and_plans_survive_the_wire) {
@@ -82,6 +84,8 @@ TEST(Bodies, of_declarations_and_plans_survive_the_wire) {
   EXPECT_EQ(d.elements, triangle().elements);
   EXPECT_EQ(d.boundary, triangle().boundary);
   EXPECT_EQ(d.memory_estimate, 123.0);
+  EXPECT_TRUE(d.has_checkpoints);
+  EXPECT_FALSE(d.has_stages);
 
   const Plan p = over_the_wire(plan());
   EXPECT_EQ(p.weights, plan().weights);
@@ -105,6 +109,9 @@ TEST(Bodies, of_limits_and_schedules_survive_the_wire_to_the_last_bit) {
   EXPECT_EQ(limits.limited_by, "node 7");
 
   Schedule s{.time_step = 1e-7 / 3, .steps = 1'000'000'007, .history_every = 3, .frame_every = 9};
+  s.ends = {4, 4, 9};
+  s.first_step = 5;
+  s.checkpoint_every = 7;
   s.layout = 0xfedcba9876543210;
   s.channel = {"shm", "/proc/1/fd/3", 5, 1024, 512};
   const Schedule back = over_the_wire(s);
@@ -112,6 +119,9 @@ TEST(Bodies, of_limits_and_schedules_survive_the_wire_to_the_last_bit) {
   EXPECT_EQ(back.steps, s.steps);
   EXPECT_EQ(back.history_every, 3u);
   EXPECT_EQ(back.frame_every, 9u);
+  EXPECT_EQ(back.ends, s.ends);
+  EXPECT_EQ(back.first_step, 5u);
+  EXPECT_EQ(back.checkpoint_every, 7u);
   EXPECT_EQ(back.layout, s.layout);
   EXPECT_EQ(back.channel.endpoint, "/proc/1/fd/3");
   EXPECT_EQ(back.channel.up_capacity, 1024u);
@@ -121,6 +131,14 @@ TEST(Bodies, of_limits_and_schedules_survive_the_wire_to_the_last_bit) {
 
 TEST(Bodies, of_the_reports_survive_the_wire) {
   EXPECT_EQ(over_the_wire(Progress{12, 0.5}).step, 12u);
+  EXPECT_EQ(over_the_wire(CheckpointReport{34}).step, 34u);
+  const ConditionMet met = over_the_wire(ConditionMet{7, "at rest", 1.0 / 3});
+  EXPECT_EQ(met.step, 7u);
+  EXPECT_EQ(met.name, "at rest");
+  EXPECT_EQ(met.value, 1.0 / 3);
+  const Ends ends = over_the_wire(Ends{8, {3, 8}});
+  EXPECT_EQ(ends.steps, 8u);
+  EXPECT_EQ(ends.ends, (std::vector<std::uint64_t>{3, 8}));
   const Finished finished = over_the_wire(Finished{5, 0.1, 0.2, 0.3, R"({"x": 1})"});
   EXPECT_EQ(finished.steps, 5u);
   EXPECT_EQ(finished.exchange_seconds, 0.2);
@@ -168,6 +186,8 @@ TEST(Bodies, of_schedules_without_sense_are_refused) {
   EXPECT_NE(refusal<Schedule>(with(s, "/time_step", "0")), "");
   EXPECT_NE(refusal<Schedule>(with(s, "/time_step", "-1e-6")), "");
   EXPECT_NE(refusal<Schedule>(with(s, "/history_every", "0")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/ends", "[5, 4]")), "");
+  EXPECT_NE(refusal<Schedule>(with(s, "/ends", "[-5]")), "");
   EXPECT_NE(refusal<Schedule>(with(s, "/layout", R"("12 apples")")), "");
   EXPECT_NE(refusal<Schedule>(with(s, "/channel", R"("shm")")), "");
   EXPECT_NE(refusal<Schedule>(with(s, "/channel", R"({"transport": "shm"})")), "");

@@ -1,0 +1,182 @@
+// What can be wrong with stages and stop conditions beyond the types of their values.
+#include "common/config/case_reader.hpp"
+#include "common/config/value_types.hpp"
+#include "common/nearest.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+namespace kerf::config {
+namespace {
+
+using nlohmann::json;
+using std::string;
+
+class StageChecks {
+public:
+  StageChecks(const json& settings, Problems& problems)
+      : settings_(settings), problems_(problems) {}
+
+  void run() {
+    const json& stages = settings_["stages"];
+    if (settings_["case"]["end_time"].is_null() && stages.empty())
+      problems_.add("case.end_time", "case.end_time is missing.",
+                    "give the time at which the run ends, for example 4e-5, or stages.");
+    check_conditions("case.stop", settings_["case"]["stop"]);
+    for (std::size_t k = 0; k < settings_["measures"].size(); ++k)
+      if (settings_["measures"][k]["name"] == "end")
+        problems_.add(fmt::format("measures[{}].name", k), "a measure is named \"end\".",
+                      "give it another name: this one is that of the end of the run.");
+    std::set<string> names;
+    for (std::size_t s = 0; s < stages.size(); ++s) {
+      const string key = fmt::format("stages[{}]", s);
+      if (!names.insert(stages[s]["name"]).second)
+        problems_.add(key + ".name",
+                      fmt::format("two stages are named {}.", shown(stages[s]["name"])),
+                      "give each one a name of its own.");
+      check_conditions(key + ".stop", stages[s]["stop"]);
+      for (std::size_t k = 0; k < stages[s]["changes"].size(); ++k)
+        check_change(fmt::format("{}.changes[{}]", key, k), stages[s]["changes"][k]);
+    }
+  }
+
+private:
+  /// The participant that a table names, or the only one; null when there is none to look at.
+  const json* participant_of(const string& key, const json& table) {
+    const json& participants = settings_["participants"];
+    const json& name = table["participant"];
+    std::vector<string> names;
+    for (const auto& [other, participant] : participants.items())
+      names.push_back(other);
+    if (name.is_null()) {
+      if (names.size() == 1)
+        return &participants[names.front()];
+      problems_.add(key, fmt::format("{}.participant is missing.", key),
+                    fmt::format("name one of {}.", fmt::join(names, ", ")));
+      return nullptr;
+    }
+    if (participants.contains(name.get<string>()))
+      return &participants[name.get<string>()];
+    const string meant = nearest(name.get<string>(), names);
+    problems_.add(key + ".participant",
+                  fmt::format("{}.participant = {} is not a participant.", key, shown(name)),
+                  meant.empty() ? fmt::format("name one of {}.", fmt::join(names, ", "))
+                                : "did you mean " + meant + "?");
+    return nullptr;
+  }
+
+  void check_conditions(const string& list, const json& conditions) {
+    for (std::size_t k = 0; k < conditions.size(); ++k) {
+      const string key = fmt::format("{}[{}]", list, k);
+      const json& condition = conditions[k];
+      if (!names_.insert(condition["name"]).second)
+        problems_.add(key + ".name",
+                      fmt::format("two conditions are named {}.", shown(condition["name"])),
+                      "give each one a name of its own.");
+      if (condition["above"].is_null() == condition["below"].is_null())
+        problems_.add(key,
+                      fmt::format("{} has {} bound.", key,
+                                  condition["above"].is_null() ? "no" : "more than one"),
+                      "give above or below.");
+      if (const json* participant = participant_of(key, condition))
+        check_quantity(key, condition, *participant);
+    }
+  }
+
+  void check_quantity(const string& key, const json& condition, const json& participant) {
+    const string quantity = condition["quantity"];
+    if (participant["kind"] != "dem") {
+      problems_.add(key, fmt::format("{} is of a participant without particles.", key),
+                    "name a participant of kind dem.");
+      return;
+    }
+    const bool of_probe = quantity == "strain" || quantity == "stress";
+    const bool of_tool = quantity == "displacement" || quantity == "force";
+    check_named(key, condition, "probe", of_probe, participant["probes"]);
+    check_named(key, condition, "tool", of_tool, participant["tools"]);
+    check_component(key, condition, of_probe, of_tool);
+  }
+
+  /// A probe or a tool is named where the quantity has one, and it is there.
+  void check_named(const string& key, const json& condition, const char* what, bool is_needed,
+                   const json& list) {
+    const json& name = condition[what];
+    if (is_needed == name.is_null())
+      problems_.add(
+          fmt::format("{}.{}", key, what),
+          fmt::format("{}.{} is {}.", key, what, is_needed ? "missing" : "given"),
+          fmt::format("quantity = {} {}.", shown(condition["quantity"]),
+                      is_needed ? fmt::format("needs the name of a {}", what) : "does not use it"));
+    if (is_needed && !name.is_null())
+      check_member(fmt::format("{}.{}", key, what), name, what, list);
+  }
+
+  void check_member(const string& key, const json& name, const char* what, const json& list) {
+    std::vector<string> names;
+    for (const json& member : list)
+      names.push_back(member["name"]);
+    if (std::find(names.begin(), names.end(), name.get<string>()) != names.end())
+      return;
+    const string meant = nearest(name.get<string>(), names);
+    problems_.add(key,
+                  fmt::format("{} = {} is not a {} of the participant.", key, shown(name), what),
+                  names.empty()   ? fmt::format("the participant has no {}s.", what)
+                  : meant.empty() ? fmt::format("name one of {}.", fmt::join(names, ", "))
+                                  : "did you mean " + meant + "?");
+  }
+
+  void check_component(const string& key, const json& condition, bool of_probe, bool of_tool) {
+    const bool is_plane = settings_["case"]["dimension"] == 2;
+    std::vector<string> allowed;
+    if (of_probe)
+      allowed = is_plane ? std::vector<string>{"xx", "yy", "xy"}
+                         : std::vector<string>{"xx", "yy", "zz", "yz", "xz", "xy"};
+    if (of_tool)
+      allowed = is_plane ? std::vector<string>{"x", "y"} : std::vector<string>{"x", "y", "z"};
+    const json& component = condition["component"];
+    if (allowed.empty() && !component.is_null())
+      problems_.add(key + ".component", key + ".component is given.",
+                    fmt::format("quantity = {} does not use it.", shown(condition["quantity"])));
+    else if (!allowed.empty() &&
+             (component.is_null() ||
+              std::find(allowed.begin(), allowed.end(), component.get<string>()) == allowed.end()))
+      problems_.add(key + ".component",
+                    component.is_null()
+                        ? key + ".component is missing."
+                        : fmt::format("{}.component = {} is none of quantity = {}.", key,
+                                      shown(component), shown(condition["quantity"])),
+                    fmt::format("give one of {}.", fmt::join(allowed, ", ")));
+  }
+
+  void check_change(const string& key, const json& change) {
+    const json* participant = participant_of(key, change);
+    if (participant == nullptr)
+      return;
+    if ((*participant)["kind"] != "dem") {
+      problems_.add(key, fmt::format("{} is of a participant without particles.", key),
+                    "name a participant of kind dem.");
+      return;
+    }
+    if (!change["bond_gap"].is_null() && (*participant)["material"]["law"] == "hertz_mindlin")
+      problems_.add(key + ".bond_gap", key + ".bond_gap is given, but hertz_mindlin has no bonds.",
+                    "leave it out, or choose another law.");
+    for (std::size_t k = 0; k < change["tools"].size(); ++k)
+      check_member(fmt::format("{}.tools[{}].name", key, k), change["tools"][k]["name"], "tool",
+                   (*participant)["tools"]);
+  }
+
+  const json& settings_;
+  Problems& problems_;
+  std::set<string> names_; // of all conditions: the summary tells them apart by it
+};
+
+} // namespace
+
+void check_stages(const json& settings, Problems& problems) {
+  StageChecks(settings, problems).run();
+}
+
+} // namespace kerf::config
