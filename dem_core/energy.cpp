@@ -86,23 +86,10 @@ Vec<dim> momentum(const Particles<dim>& p, const Loads<dim>& loads, const Bounda
 template <int dim>
 StepWork step_work(const Particles<dim>& p, const Loads<dim>& loads, const Boundary<dim>& boundary,
                    std::span<const std::uint32_t> touched, double time_step) {
-  const auto prescribed = boundary.particles();
   const auto before = [&](std::size_t i) {
     return half_step_before(p, loads, boundary, time_step, i);
   };
-  StepWork work = ordered_sum(prescribed.size(), [&](std::size_t entry) {
-    const std::uint32_t i = prescribed[entry];
-    const Vec<dim> v_before = before(i).velocity;
-    Vec<dim> reaction = p.mass[i] * ((p.velocity[i] - v_before) / time_step -
-                                     acceleration(p, loads, i).translation); // N
-    for (int axis = 0; axis < dim; ++axis)
-      if (!boundary.prescribes(i, axis))
-        reaction[axis] = 0.0;
-    StepWork one;
-    add_halves(one, &Work::external, reaction, v_before, p.velocity[i], time_step);
-    return one;
-  });
-  work += ordered_sum(touched.size(), [&](std::size_t entry) {
+  StepWork work = ordered_sum(touched.size(), [&](std::size_t entry) {
     const std::uint32_t i = touched[entry];
     StepWork one;
     add_halves(one, &Work::interface, loads.interface_force[i], before(i).velocity, p.velocity[i],

@@ -38,7 +38,8 @@ Engine<dim>::Engine(const Settings<dim>& settings)
       period_(settings.period),
       particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
                                      settings.ids)),
-      boundary_(settings.boundary, particles_.reference), gravity_(settings.gravity),
+      boundary_(settings.boundary, particles_.reference), reactions_(settings.boundary.size()),
+      applied_forces_(settings.applied_forces, particles_), gravity_(settings.gravity),
       start_rotation_(particles_.size(), Rot<dim>::Zero()) {
   check(material_);
   if (!gravity_.allFinite())
@@ -178,6 +179,7 @@ template <int dim> void Engine<dim>::compute_own_forces() {
                               loads_);
   }
   add_weight(gravity_, particles_, loads_);
+  applied_forces_.add(static_cast<double>(step_) * time_step_, particles_, loads_);
   add_damping(damping_, particles_, loads_);
   forces_are_current_ = true;
 }
@@ -242,13 +244,16 @@ template <int dim> void Engine<dim>::book_step() {
     work_ += step.before;
   work_ahead_ = work_;
   work_ahead_ += step.after;
+  reactions_.book(particles_, loads_, boundary_, time_step_, step_ == 0);
+  applied_forces_.book(static_cast<double>(step_) * time_step_, particles_, loads_, boundary_,
+                       time_step_, step_ == 0);
 }
 
 template <int dim> Energies Engine<dim>::energies() const {
   Energies energies;
   energies.kinetic = kinetic_energy(particles_, loads_, boundary_, time_step_);
   energies.elastic = elastic_energy(contacts_, particles_);
-  energies.external_work = work_.external;
+  energies.external_work = reactions_.work() + applied_forces_.work();
   energies.interface_work = work_.interface;
   energies.damping_dissipation = -work_.damping;
   for (const ContactLosses& block : contacts_.losses) {
@@ -267,6 +272,10 @@ template <int dim> Energies Engine<dim>::energies() const {
 
 template <int dim> Vec<dim> Engine<dim>::momentum() const {
   return dem::momentum(particles_, loads_, boundary_, time_step_);
+}
+
+template <int dim> Reaction<dim> Engine<dim>::reaction(std::size_t set) const {
+  return dem::reaction(particles_, loads_, boundary_, time_step_, set);
 }
 
 template <int dim> double Engine<dim>::unbalanced_force() const {

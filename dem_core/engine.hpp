@@ -1,12 +1,14 @@
 // The particle engine: a model, its state, and the calls of one time step in their order.
 #pragma once
 
+#include "dem_core/applied_forces.hpp"
 #include "dem_core/boundary.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
 #include "dem_core/particles.hpp"
+#include "dem_core/reactions.hpp"
 #include "dem_core/settings.hpp"
 #include "dem_core/tool.hpp"
 #include "dem_core/wall_contacts.hpp"
@@ -87,6 +89,10 @@ public:
   /// Of t_n, after integrate() of step n.
   Energies energies() const;
   Vec<dim> momentum() const;
+  /// What holds a set of the boundary, and what is applied from outside; of t_n, after integrate().
+  Reaction<dim> reaction(std::size_t set) const;
+  const Reactions<dim>& reactions() const noexcept { return reactions_; }
+  const AppliedForces<dim>& applied_forces() const noexcept { return applied_forces_; }
   /// Mean resultant over mean contact force at t_n, after integrate(); see balance.hpp.
   double unbalanced_force() const;
 
@@ -108,6 +114,8 @@ private:
   Period<dim> period_;
   Particles<dim> particles_;
   Boundary<dim> boundary_;
+  Reactions<dim> reactions_;
+  AppliedForces<dim> applied_forces_;
   Contacts<dim> contacts_;
   Skin<dim> skin_;
   std::vector<std::string> tool_names_;

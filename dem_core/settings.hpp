@@ -5,6 +5,7 @@
 #include "dem_core/tool_motion.hpp"
 #include "dem_core/tool_shape.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -68,18 +69,29 @@ struct Damping {
 enum class Motion {
   fixed,    // does not move
   velocity, // constant velocity
+  table,    // velocity that follows tables of times
   hann,     // displacement amplitude * (1 - cos(2 pi t / duration)) / 2 until t = duration
 };
 
 /// Motion that some particles are given, whatever the forces. Where two of them meet in one
 /// component, the later one counts.
 template <int dim> struct Prescription {
-  Box<dim> box;                          // selects by the reference position
-  std::uint8_t components = 0;           // bit a: axis a; bit dim: every rotation, held at zero
-  Motion motion = Motion::fixed;         //
-  Vec<dim> velocity = Vec<dim>::Zero();  // of Motion::velocity, m/s
-  Vec<dim> amplitude = Vec<dim>::Zero(); // of Motion::hann, m
-  double duration = 0.0;                 // of Motion::hann, s
+  Box<dim> box;                            // selects by the reference position
+  std::uint8_t components = 0;             // bit a: axis a; bit dim: every rotation
+  Motion motion = Motion::fixed;           // along the axes
+  Vec<dim> velocity = Vec<dim>::Zero();    // of Motion::velocity, m/s
+  std::array<TimeTable, dim> velocities{}; // of Motion::table, m/s
+  Vec<dim> amplitude = Vec<dim>::Zero();   // of Motion::hann, m
+  double duration = 0.0;                   // of Motion::hann, s
+  Rot<dim> axis = Rot<dim>::UnitX();       // of each particle's own rotation, of any length
+  TimeTable rotation_rate{};               // about it, rad/s
+};
+
+/// Force from outside on some particles; several of them add up.
+template <int dim> struct AppliedForce {
+  Box<dim> box;                       // selects by the reference position
+  std::array<TimeTable, dim> force{}; // along each axis, N
+  bool is_total = false; // shared by mass, so that all are accelerated alike; else on each particle
 };
 
 /// One-way displacement pulse amplitude * (1 + cos(2 pi z / length)) / 2, |z| < length / 2.
@@ -126,6 +138,7 @@ template <int dim> struct Settings {
   ShearIncrement shear_increment = ShearIncrement::midpoint;
   Damping damping;
   std::vector<Prescription<dim>> boundary;
+  std::vector<AppliedForce<dim>> applied_forces;
   std::vector<InitialCondition<dim>> initial;
   Period<dim> period;
   std::vector<ToolSettings<dim>> tools;

@@ -52,6 +52,7 @@ private:
                      {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}});
       check_probes(key, participant["probes"]);
       check_tools(key, participant["tools"]);
+      check_loads(key + ".loads", participant["loads"]);
     } else {
       check_elastic(key + ".material", participant["material"]);
     }
@@ -154,7 +155,7 @@ private:
 
   /// Each has a file of its own, and so have the cracks.
   void check_probes(const string& participant, const json& probes) {
-    std::set<string> names = {"cracks"};
+    std::set<string> names = {"cracks", "boundary", "loads"};
     for (std::size_t k = 0; k < probes.size(); ++k)
       check_name(fmt::format("{}.probes[{}]", participant, k), probes[k]["name"],
                  "time series of " + participant, names);
@@ -170,7 +171,7 @@ private:
   }
 
   void check_tools(const string& participant, const json& tools) {
-    std::set<string> names;
+    std::set<string> names = {"boundary", "loads"};
     for (std::size_t k = 0; k < tools.size(); ++k) {
       const string key = fmt::format("{}.tools[{}]", participant, k);
       check_name(key, tools[k]["name"], "tools", names);
@@ -187,6 +188,16 @@ private:
       }
       if (const json& free = tools[k]["free"]; !free.is_null())
         check_components(key + ".free.axes", free["axes"]);
+    }
+  }
+
+  void check_loads(const string& list, const json& loads) {
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      const string key = fmt::format("{}[{}]", list, k);
+      check_one_of(key, loads[k], "force", "forces");
+      if (loads[k]["force"].is_null() && loads[k]["forces"].is_null())
+        problems_.add(key, key + " has neither force nor forces.",
+                      "give the force, or a table of forces.");
     }
   }
 
@@ -207,9 +218,9 @@ private:
       check_one_of(key + ".rotation", rotation, "rate", "rates");
     if (is_plane_ && has_axis)
       problems_.add(key + ".rotation.axis",
-                    key + ".rotation.axis is given, but in 2D a tool turns in the plane.",
+                    key + ".rotation.axis is given, but in 2D everything turns in the plane.",
                     "leave it out; a positive rate turns x towards y.");
-    const bool turns = !rotation.is_null() || !tool["free_rotation"].is_null();
+    const bool turns = !rotation.is_null() || !tool.value("free_rotation", json()).is_null();
     if (!is_plane_ && turns && !has_axis)
       problems_.add(key + ".rotation.axis", key + ".rotation.axis is missing.",
                     "give the direction of the axis, for example [0.0, 0.0, 1.0].");
@@ -258,8 +269,19 @@ private:
                     "give the tag of a boundary, or a box around points.");
     check_components(key + ".components", boundary["components"]);
     const string motion = boundary["motion"];
+    const bool has_table = !boundary.value("velocities", json()).is_null();
     check_keys_of(key, boundary, "motion", motion,
-                  {{"velocity", {"velocity"}}, {"hann", {"amplitude", "duration"}}});
+                  {{"velocity", {has_table ? "velocities" : "velocity"}},
+                   {"hann", {"amplitude", "duration"}}});
+    if (!boundary.contains("velocities")) // of particles only
+      return;
+    check_one_of(key, boundary, "velocity", "velocities");
+    if (motion != "velocity" && has_table)
+      problems_.add(key + ".velocities",
+                    fmt::format("{0}.velocities is given, but motion = \"{1}\" does not use it.",
+                                key, motion),
+                    "leave it out, or give motion = \"velocity\".");
+    check_rotation(key, boundary);
   }
 
   void check_initial(const string& key, const json& initial) {

@@ -45,7 +45,8 @@ DemOutput<dim>::DemOutput(Engine<dim>& engine, const Watch<dim>& watch,
     : engine_(engine), frames_(run_folder, name, dim),
       history_(run_folder / "history" / (name + ".csv"), history_columns<dim>()),
       cracks_(run_folder / "history" / (name + "_cracks.csv")), tools_(engine, run_folder, name),
-      domain_(watch.domain), fragments_(find_fragments(engine.contacts(), engine.particles())) {
+      sets_(engine, run_folder, name), domain_(watch.domain),
+      fragments_(find_fragments(engine.contacts(), engine.particles())) {
   for (const Probe<dim>& probe : watch.probes)
     probes_.emplace_back(run_folder / "history" / (name + "_" + probe.name + ".csv"), probe.box);
 }
@@ -86,6 +87,7 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
   row.insert(row.end(), momentum.begin(), momentum.end());
   history_.append(row);
   tools_.write_history(step, time);
+  sets_.write_history(step, time);
   for (ProbeFile<dim>& probe : probes_)
     probe.write(step, time, engine_);
 }

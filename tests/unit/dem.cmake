@@ -16,6 +16,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_critical_step.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
@@ -27,3 +28,4 @@ target_link_libraries(dem_tests PRIVATE kerf::dem kerf::dem_participant kerf::wa
 gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
 
 kerf_python_test(case.tools verification/tools.py Tools)
+kerf_python_test(case.boundaries verification/bodies.py Boundaries)

@@ -1,0 +1,82 @@
+#include "dem_core/program/set_output.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace kerf::dem {
+
+namespace {
+
+void add_axes(std::vector<Column>& columns, const std::string& name, const char* unit,
+              std::string_view axes) {
+  for (const char axis : axes)
+    columns.push_back({name + "_" + axis, unit});
+}
+
+template <int dim> std::vector<Column> boundary_columns() {
+  const std::string_view axes = std::string_view("xyz").substr(0, dim);
+  std::vector<Column> columns = {
+      {"step", "1"}, {"time", "s"}, {"boundary", "1"}, {"particles", "1"}};
+  add_axes(columns, "displacement", "m", axes);
+  add_axes(columns, "force", "N", axes);
+  add_axes(columns, "moment", "N m", dim == 2 ? "z" : "xyz");
+  columns.insert(columns.end(), {{"power", "W"}, {"work", "J"}});
+  return columns;
+}
+
+template <int dim> std::vector<Column> load_columns() {
+  std::vector<Column> columns = {{"step", "1"}, {"time", "s"}, {"load", "1"}, {"particles", "1"}};
+  add_axes(columns, "force", "N", std::string_view("xyz").substr(0, dim));
+  columns.insert(columns.end(), {{"power", "W"}, {"work", "J"}});
+  return columns;
+}
+
+std::vector<double> begin_row(std::uint64_t step, double time, std::size_t set,
+                              std::size_t particles) {
+  return {static_cast<double>(step), time, static_cast<double>(set),
+          static_cast<double>(particles)};
+}
+
+template <class Vector> void append(std::vector<double>& row, const Vector& vector) {
+  row.insert(row.end(), vector.begin(), vector.end());
+}
+
+} // namespace
+
+template <int dim>
+SetOutput<dim>::SetOutput(const Engine<dim>& engine, const std::filesystem::path& run_folder,
+                          const std::string& participant)
+    : engine_(engine) {
+  const auto file = [&](const char* what) {
+    return run_folder / "history" / (participant + "_" + what + ".csv");
+  };
+  if (!engine.boundary().sets().empty())
+    boundary_.emplace(file("boundary"), boundary_columns<dim>());
+  if (engine.applied_forces().size() > 0)
+    loads_.emplace(file("loads"), load_columns<dim>());
+}
+
+template <int dim> void SetOutput<dim>::write_history(std::uint64_t step, double time) {
+  for (std::size_t k = 0; k < engine_.boundary().sets().size(); ++k) {
+    const Reaction<dim> reaction = engine_.reaction(k);
+    const RunningWork& work = engine_.reactions().work_of(k);
+    auto row = begin_row(step, time, k, engine_.boundary().sets()[k].particles.size());
+    append(row, reaction.displacement);
+    append(row, reaction.force);
+    append(row, reaction.moment);
+    row.insert(row.end(), {work.power(), work.work()});
+    boundary_->append(row);
+  }
+  for (std::size_t k = 0; k < engine_.applied_forces().size(); ++k) {
+    const RunningWork& work = engine_.applied_forces().work_of(k);
+    auto row = begin_row(step, time, k, engine_.applied_forces().particles(k).size());
+    append(row, engine_.applied_forces().total(k, time));
+    row.insert(row.end(), {work.power(), work.work()});
+    loads_->append(row);
+  }
+}
+
+template class SetOutput<2>;
+template class SetOutput<3>;
+
+} // namespace kerf::dem

@@ -1,0 +1,28 @@
+// What kerf-dem writes of sets of particles: reactions of the boundary and applied forces.
+#pragma once
+
+#include "common/history.hpp"
+#include "dem_core/engine.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace kerf::dem {
+
+template <int dim> class SetOutput {
+public:
+  /// Makes history/<participant>_boundary.csv and <participant>_loads.csv when there are such sets.
+  SetOutput(const Engine<dim>& engine, const std::filesystem::path& run_folder,
+            const std::string& participant);
+
+  /// A row for each set, in the order of the case; all of t_n.
+  void write_history(std::uint64_t step, double time);
+
+private:
+  const Engine<dim>& engine_;
+  std::optional<History> boundary_, loads_;
+};
+
+} // namespace kerf::dem
