@@ -1,5 +1,6 @@
 #include "dem_core/boundary.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -66,6 +67,16 @@ Boundary<dim>::Boundary(std::vector<Prescription<dim>> prescriptions,
       motion_.emplace_back().components = components[i];
       entry_[i] = static_cast<std::uint32_t>(motion_.size());
     }
+}
+
+template <int dim>
+void Boundary<dim>::carry(std::span<const std::uint32_t> carried, std::size_t particles) {
+  entry_.resize(particles, 0);
+  for (const std::uint32_t i : carried) {
+    assert(entry_[i] == 0);
+    motion_.emplace_back().components = (1u << (dim + 1)) - 1u;
+    entry_[i] = static_cast<std::uint32_t>(motion_.size());
+  }
 }
 
 template <int dim> void Boundary<dim>::advance(std::uint64_t step, double time_step) {

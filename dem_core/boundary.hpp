@@ -50,6 +50,10 @@ public:
     return entry_.empty() || entry_[i] == 0 ? nullptr : &motion_[entry_[i] - 1];
   }
 
+  /// Takes over all components of particles that somebody else moves, through of().
+  /// @param particles  [n] how many there are
+  void carry(std::span<const std::uint32_t> carried, std::size_t particles);
+
   /// Makes the velocities those of the step from t_n to t_(n+1), so that positions come out exact.
   void advance(std::uint64_t step, double time_step);
 

@@ -48,6 +48,8 @@ template <int dim>
 double kinetic_energy(const Particles<dim>& p, const Loads<dim>& loads,
                       const Boundary<dim>& boundary, double time_step) {
   return ordered_sum(p.size(), [&](std::size_t i) {
+    if (p.is_member(i))
+      return 0.0;
     const auto before = half_step_before(p, loads, boundary, time_step, i);
     return 0.5 * p.mass[i] * before.velocity.dot(p.velocity[i]) +
            0.5 * p.inertia[i] * before.angular_velocity.dot(p.angular_velocity[i]);
@@ -77,6 +79,8 @@ Vec<dim> momentum(const Particles<dim>& p, const Loads<dim>& loads, const Bounda
                   double time_step) {
   return ordered_sum(p.size(),
                      [&](std::size_t i) {
+                       if (p.is_member(i))
+                         return Total<dim>{};
                        const auto before = half_step_before(p, loads, boundary, time_step, i);
                        return Total<dim>{0.5 * p.mass[i] * (before.velocity + p.velocity[i])};
                      })

@@ -22,14 +22,14 @@ struct Energies {
   double fracture_dissipation = 0.0; // energy that was stored in bonds when they broke
 };
 
-/// Of t_n, as long as the loads are those of the last integrate().
+/// Of t_n, as long as the loads are those of the last integrate(); without members of clusters.
 template <int dim>
 double kinetic_energy(const Particles<dim>& particles, const Loads<dim>& loads,
                       const Boundary<dim>& boundary, double time_step);
 template <int dim>
 double elastic_energy(const Contacts<dim>& contacts, const Particles<dim>& particles);
 
-/// Momentum at t_n, the mean of half a step before and after, N s.
+/// Momentum at t_n, the mean of half a step before and after, N s; without members of clusters.
 template <int dim>
 Vec<dim> momentum(const Particles<dim>& particles, const Loads<dim>& loads,
                   const Boundary<dim>& boundary, double time_step);

@@ -3,6 +3,7 @@
 
 #include "dem_core/applied_forces.hpp"
 #include "dem_core/boundary.hpp"
+#include "dem_core/clusters.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/crack.hpp"
@@ -23,7 +24,7 @@ namespace kerf::dem {
 
 struct StepLimit {
   double omega2 = 0.0;    // bound of the largest eigenvalue of M^-1 K, rad²/s²
-  std::string limited_by; // the particle that has it
+  std::string limited_by; // the particle or cluster that has it
 };
 
 /// Flat arrays of points are row-major, [points][dim]. A step is
@@ -52,6 +53,9 @@ public:
   std::span<const Tool<dim>> tools() const noexcept { return tools_; }
   std::span<const WallContacts<dim>> wall_contacts() const noexcept { return wall_contacts_; }
   const std::string& tool_name(std::size_t k) const { return tool_names_[k]; }
+
+  /// Rigid clusters in the order of the settings; loads and works of t_n after integrate().
+  const Clusters<dim>& clusters() const noexcept { return clusters_; }
 
   /// Mean normal stiffness of the bonds of each particle; of the material if it has none, N/m.
   std::vector<double> stiffness() const;
@@ -104,6 +108,7 @@ public:
 private:
   void add_tools(const Settings<dim>& settings);
   std::vector<double> row_sums() const;
+  std::vector<double> cluster_sums() const;
   void book_step();
   void forget_interface_forces();
 
@@ -114,6 +119,7 @@ private:
   Period<dim> period_;
   Particles<dim> particles_;
   Boundary<dim> boundary_;
+  Clusters<dim> clusters_;
   Reactions<dim> reactions_;
   AppliedForces<dim> applied_forces_;
   Contacts<dim> contacts_;

@@ -94,6 +94,22 @@ template <int dim> struct AppliedForce {
   bool is_total = false; // shared by mass, so that all are accelerated alike; else on each particle
 };
 
+/// Particles that are joined to one rigid body; see clusters.hpp.
+template <int dim> struct ClusterSettings {
+  std::string name;
+  std::optional<Box<dim>> box;    // its members, by the reference position,
+  std::vector<std::uint32_t> ids; // or by what the user calls them
+  bool is_free = true;
+  /// Of a body that is not free, with the reference point at the centre unless has_reference; a
+  /// free one begins with this velocity and rotation.
+  ToolMotion<dim> motion;
+  bool has_reference = false;
+  // Instead of what follows from the members, which are taken not to overlap.
+  std::optional<double> mass;                                                   // kg
+  std::optional<Vec<dim>> centre;                                               // m
+  std::optional<Eigen::Matrix<double, rotations<dim>, rotations<dim>>> inertia; // about it, kg m²
+};
+
 /// One-way displacement pulse amplitude * (1 + cos(2 pi z / length)) / 2, |z| < length / 2.
 struct Pulse {
   double amplitude = 0.0;  // m
@@ -142,6 +158,7 @@ template <int dim> struct Settings {
   std::vector<InitialCondition<dim>> initial;
   Period<dim> period;
   std::vector<ToolSettings<dim>> tools;
+  std::vector<ClusterSettings<dim>> clusters;
   Vec<dim> gravity = Vec<dim>::Zero(); // of the particles; a free tool has its own force, m/s²
 };
 

@@ -12,6 +12,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_wall_contacts.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_clusters.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_contact_laws.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_critical_step.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
