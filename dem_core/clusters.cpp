@@ -63,7 +63,7 @@ void weigh(const ClusterSettings<dim>& settings, const Particles<dim>& p, Cluste
     c.inertia += p.mass[i] * inertia_at<dim>(arm) + p.inertia[i] * Inertia<dim>::Identity();
   }
   c.inertia *= settings.mass.value_or(c.mass) / c.mass;
-  c.mass = settings.mass.value_or(c.mass);
+  c.mass = c.weighed_mass = settings.mass.value_or(c.mass);
   c.inertia = settings.inertia.value_or(c.inertia);
   if (!(c.mass > 0.0) || !std::isfinite(c.mass))
     throw std::invalid_argument(fmt::format("its mass {} kg must be positive", c.mass));
@@ -149,6 +149,16 @@ Clusters<dim>::Clusters(std::span<const ClusterSettings<dim>> settings, Particle
     boundary.carry(c.members, particles.size());
 }
 
+template <int dim> void Clusters<dim>::scale_mass(std::span<const double> factor) {
+  for (std::size_t k = 0; k < size(); ++k) {
+    Cluster<dim>& c = clusters_[k];
+    const double change = factor[k] * c.weighed_mass / c.mass;
+    c.mass *= change;
+    c.inertia *= change;
+    c.least_inertia *= change;
+  }
+}
+
 template <int dim> void Clusters<dim>::start(Particles<dim>& p) {
   for (Cluster<dim>& c : clusters_) {
     double mass = 0.0; // of the members, kg
@@ -185,7 +195,7 @@ void Clusters<dim>::advance(const Loads<dim>& loads, const Damping& damping,
   const double then = static_cast<double>(step + 1) * dt;
   for (Cluster<dim>& c : clusters_) {
     c.load = sum_loads(c, loads);
-    c.load.force += c.mass * gravity;
+    c.load.force += c.weighed_mass * gravity;
     c.displacement_before = c.displacement;
     c.orientation_before = c.orientation;
     c.velocity_before = c.velocity;
@@ -291,7 +301,7 @@ template <int dim> double Clusters<dim>::damping_work() const {
 template <int dim> double Clusters<dim>::weight_work(const Vec<dim>& gravity) const {
   double work = 0.0;
   for (const Cluster<dim>& c : clusters_)
-    work += c.mass * gravity.dot(c.displacement_before);
+    work += c.weighed_mass * gravity.dot(c.displacement_before);
   return work;
 }
 

@@ -35,6 +35,7 @@ template <int dim> struct Cluster {
   bool is_free = true;
   Vec<dim> start;                        // centre at the start, m
   double mass = 0.0;                     // kg
+  double weighed_mass = 0.0;             // without mass scaling, kg
   Inertia<dim> inertia;                  // about the centre, in its frame, kg m²
   double extent = 0.0;                   // from the centre to the farthest surface, m
   double least_inertia = 0.0;            // about any axis, kg m²
@@ -90,6 +91,9 @@ public:
     const Cluster<dim>& cluster = clusters_[particles.cluster[i] - 1];
     return cluster.is_free ? &cluster : nullptr;
   }
+
+  /// Multiplies masses and inertias by factors, from what they were at first.
+  void scale_mass(std::span<const double> factor);
 
   /// Initial velocities: those that the members have on average, and the own ones.
   void start(Particles<dim>& particles);

@@ -27,6 +27,14 @@ struct StepLimit {
   std::string limited_by; // the particle or cluster that has it
 };
 
+/// What mass scaling has added.
+struct AddedMass {
+  double added = 0.0, before = 0.0; // kg
+  std::size_t particles = 0;        // heavier than they were; a cluster counts with all of its own
+  double largest_factor = 1.0;
+  std::uint32_t largest_id = 0; // of the particle that has it
+};
+
 /// Flat arrays of points are row-major, [points][dim]. A step is
 ///
 ///     engine.motion(…);               // x^n, v^(n-1/2)
@@ -71,6 +79,7 @@ public:
   void set_weights(std::span<const double> weight);
 
   StepLimit step_limit() const;
+  AddedMass added_mass() const;
   /// Blended inverse mass, 0 where prescribed, 1/kg.
   void inverse_mass(std::span<const std::uint32_t> points, std::span<double> out) const;
   /// Own row sum of M^-1 K of each point, rad²/s²; [points]. See row_sum().
@@ -107,6 +116,7 @@ public:
 
 private:
   void add_tools(const Settings<dim>& settings);
+  void scale_mass();
   std::vector<double> row_sums() const;
   std::vector<double> cluster_sums() const;
   void book_step();
@@ -127,6 +137,7 @@ private:
   std::vector<std::string> tool_names_;
   std::vector<Tool<dim>> tools_;
   std::vector<WallContacts<dim>> wall_contacts_;
+  std::optional<MassScaling> mass_scaling_;
   Vec<dim> gravity_;                     // m/s²
   double weight_work_at_start_ = 0.0;    // J
   std::vector<Rot<dim>> start_rotation_; // made before the start, rad

@@ -12,7 +12,7 @@ void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, Loads<
 #pragma omp parallel for schedule(static) if (count > particles_per_block)
   for (std::int64_t i = 0; i < count; ++i)
     if (!particles.is_member(i))
-      loads.own[i].force += particles.mass[i] * gravity;
+      loads.own[i].force += particles.weighed_mass(i) * gravity;
 }
 
 template <int dim>
@@ -22,7 +22,7 @@ double weight_work(const Vec<dim>& gravity, const Particles<dim>& p, double time
   return ordered_sum(p.size(), [&](std::size_t i) {
     if (p.is_member(i))
       return 0.0;
-    return p.mass[i] * gravity.dot(p.displacement[i] - time_step * p.velocity[i]);
+    return p.weighed_mass(i) * gravity.dot(p.displacement[i] - time_step * p.velocity[i]);
   });
 }
 

@@ -110,6 +110,12 @@ template <int dim> struct ClusterSettings {
   std::optional<Eigen::Matrix<double, rotations<dim>, rotations<dim>>> inertia; // about it, kg m²
 };
 
+/// More mass and inertia than the particles have, which their weight does not feel.
+struct MassScaling {
+  double critical_step = 0.0; // that is wished, s; 0: the factor is given
+  double factor = 1.0;        // of all masses
+};
+
 /// One-way displacement pulse amplitude * (1 + cos(2 pi z / length)) / 2, |z| < length / 2.
 struct Pulse {
   double amplitude = 0.0;  // m
@@ -159,6 +165,7 @@ template <int dim> struct Settings {
   Period<dim> period;
   std::vector<ToolSettings<dim>> tools;
   std::vector<ClusterSettings<dim>> clusters;
+  std::optional<MassScaling> mass_scaling;
   Vec<dim> gravity = Vec<dim>::Zero(); // of the particles; a free tool has its own force, m/s²
 };
 

@@ -53,6 +53,9 @@ private:
       check_probes(key, participant["probes"]);
       check_tools(key, participant["tools"]);
       check_loads(key + ".loads", participant["loads"]);
+      check_clusters(key + ".clusters", participant["clusters"]);
+      if (!participant["mass_scaling"].is_null())
+        check_mass_scaling(key, participant);
     } else {
       check_elastic(key + ".material", participant["material"]);
     }
@@ -155,7 +158,7 @@ private:
 
   /// Each has a file of its own, and so have the cracks.
   void check_probes(const string& participant, const json& probes) {
-    std::set<string> names = {"cracks", "boundary", "loads"};
+    std::set<string> names = {"cracks", "boundary", "loads", "clusters"};
     for (std::size_t k = 0; k < probes.size(); ++k)
       check_name(fmt::format("{}.probes[{}]", participant, k), probes[k]["name"],
                  "time series of " + participant, names);
@@ -171,7 +174,7 @@ private:
   }
 
   void check_tools(const string& participant, const json& tools) {
-    std::set<string> names = {"boundary", "loads"};
+    std::set<string> names = {"boundary", "loads", "clusters"};
     for (std::size_t k = 0; k < tools.size(); ++k) {
       const string key = fmt::format("{}.tools[{}]", participant, k);
       check_name(key, tools[k]["name"], "tools", names);
@@ -199,6 +202,63 @@ private:
         problems_.add(key, key + " has neither force nor forces.",
                       "give the force, or a table of forces.");
     }
+  }
+
+  void check_clusters(const string& list, const json& clusters) {
+    for (std::size_t k = 0; k < clusters.size(); ++k) {
+      const string key = fmt::format("{}[{}]", list, k);
+      const json& cluster = clusters[k];
+      const std::vector<string> members = given(cluster, {"box", "ids", "file"});
+      if (members.size() != 1)
+        problems_.add(key,
+                      fmt::format("{} has {}.", key,
+                                  members.empty() ? "neither box nor ids nor file"
+                                                  : fmt::format("{}", fmt::join(members, " and "))),
+                      "give one of them: it says which particles are joined.");
+      check_one_of(key, cluster, "velocity", "velocities");
+      check_rotation(key, cluster);
+      const bool is_free = cluster["motion"] == "free";
+      for (const char* name : {"mass", "center", "inertia"})
+        if (!cluster[name].is_null() && (!is_free || !cluster["file"].is_null()))
+          problems_.add(key + "." + name,
+                        fmt::format("{}.{} is given, but it is only of one free body.", key, name),
+                        "leave it out.");
+      for (const char* name : {"velocities", "reference"})
+        if (!cluster[name].is_null() && is_free)
+          problems_.add(key + "." + name,
+                        fmt::format("{}.{} is given, but the body is free.", key, name),
+                        "leave it out, or give motion = \"prescribed\".");
+      if (!is_free && !cluster["file"].is_null())
+        problems_.add(key + ".file", key + ".file is given, but its bodies are free.",
+                      "give motion = \"free\", or a prescribed body by its box or ids.");
+    }
+  }
+
+  /// Waves are slower in heavier particles.
+  void check_mass_scaling(const string& participant, const json& table) {
+    const string key = participant + ".mass_scaling";
+    const json& scaling = table["mass_scaling"];
+    if (scaling["critical_step"].is_null() == scaling["factor"].is_null())
+      problems_.add(key, key + " needs either critical_step or factor.", "give one of them.");
+    const string name = participant.substr(participant.rfind('.') + 1);
+    for (const json& coupling : settings_["couplings"])
+      for (const json& member : coupling["between"])
+        if (member == name)
+          problems_.add(key,
+                        fmt::format("{} is given, but {} is coupled: waves would not cross.", key,
+                                    participant),
+                        "leave it out, or the coupling.");
+    const auto is_wave = [](const json& one) {
+      return one.value("kind", "") == "pulse" || one.value("motion", "") == "hann";
+    };
+    for (const char* list : {"initial", "boundary"})
+      for (const json& one : table[list])
+        if (is_wave(one))
+          problems_.add(key,
+                        fmt::format("{} is given, but {}.{} makes a wave, whose speed it "
+                                    "would change.",
+                                    key, participant, list),
+                        "leave it out; it is for slow loading.");
   }
 
   /// The history of a tool has the names of its participant and its own.

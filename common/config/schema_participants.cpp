@@ -154,6 +154,18 @@ std::vector<Key> load_keys() {
   };
 }
 
+std::vector<Key> mass_scaling_keys() {
+  using enum Type;
+  return {
+      {"participants.*.mass_scaling", "dem", optional_table, "", none, anything, "mass scaling",
+       "more inertia than the particles have, for a larger time step; static results stay"},
+      {"participants.*.mass_scaling.critical_step", "dem", number, "s", none, in(above_zero),
+       "1e-6", "the critical step that is wished: particles with a smaller one become heavier"},
+      {"participants.*.mass_scaling.factor", "dem", number, "", none, in(from_one), "100.0",
+       "instead of critical_step: the factor of all masses"},
+  };
+}
+
 std::vector<Key> model_of_mesh() {
   using enum Type;
   const Range poisson{.least = -1.0, .most = 0.5, .without_least = true, .without_most = true};
@@ -257,7 +269,8 @@ std::vector<Key> motion_keys(const std::string& kind) {
 
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
-                 tool_keys(), motion_keys("dem"), load_keys(), watch_of_particles()});
+                 tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(), mass_scaling_keys(),
+                 watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {

@@ -35,6 +35,9 @@ std::vector<Key> mesh_keys();
 /// Those of its rigid tools; of particles only.
 std::vector<Key> tool_keys();
 
+/// Those of its rigid clusters.
+std::vector<Key> cluster_keys();
+
 /// The keys of "participants.*.particles.packing", which is made before the run.
 std::vector<Key> packing_keys();
 

@@ -3,6 +3,7 @@
 #include "common/packing_file.hpp"
 #include "dem_core/bonding.hpp"
 #include "dem_core/lattice.hpp"
+#include "dem_core/program/read_clusters.hpp"
 #include "dem_core/program/read_table.hpp"
 #include "dem_core/program/read_tools.hpp"
 
@@ -219,6 +220,10 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
     s.initial.push_back(read_initial<dim>(node["initial"][k]));
   s.gravity = node["gravity"].vector_or_zero<dim>();
   s.tools = read_tools<dim>(node["tools"]);
+  s.clusters = read_clusters<dim>(node["clusters"], s.positions.size());
+  if (const Node scaling = node["mass_scaling"]; !scaling.is_null())
+    s.mass_scaling = MassScaling{.critical_step = scaling["critical_step"].not_negative_or(0.0),
+                                 .factor = scaling["factor"].number_or(1.0)};
   return s;
 }
 

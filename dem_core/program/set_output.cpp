@@ -31,6 +31,20 @@ template <int dim> std::vector<Column> load_columns() {
   return columns;
 }
 
+template <int dim> std::vector<Column> cluster_columns() {
+  const std::string_view axes = std::string_view("xyz").substr(0, dim);
+  const std::string_view turns = dim == 2 ? "z" : "xyz";
+  std::vector<Column> columns = {
+      {"step", "1"}, {"time", "s"}, {"cluster", "1"}, {"particles", "1"}};
+  add_axes(columns, "position", "m", axes);
+  add_axes(columns, "velocity", "m/s", axes);
+  add_axes(columns, "angular_velocity", "rad/s", turns);
+  add_axes(columns, "force", "N", axes);
+  add_axes(columns, "moment", "N m", turns);
+  columns.insert(columns.end(), {{"power", "W"}, {"work", "J"}});
+  return columns;
+}
+
 std::vector<double> begin_row(std::uint64_t step, double time, std::size_t set,
                               std::size_t particles) {
   return {static_cast<double>(step), time, static_cast<double>(set),
@@ -54,6 +68,8 @@ SetOutput<dim>::SetOutput(const Engine<dim>& engine, const std::filesystem::path
     boundary_.emplace(file("boundary"), boundary_columns<dim>());
   if (engine.applied_forces().size() > 0)
     loads_.emplace(file("loads"), load_columns<dim>());
+  if (engine.clusters().size() > 0)
+    clusters_.emplace(file("clusters"), cluster_columns<dim>());
 }
 
 template <int dim> void SetOutput<dim>::write_history(std::uint64_t step, double time) {
@@ -73,6 +89,17 @@ template <int dim> void SetOutput<dim>::write_history(std::uint64_t step, double
     append(row, engine_.applied_forces().total(k, time));
     row.insert(row.end(), {work.power(), work.work()});
     loads_->append(row);
+  }
+  for (std::size_t k = 0; k < engine_.clusters().size(); ++k) {
+    const Cluster<dim>& cluster = engine_.clusters().all()[k];
+    auto row = begin_row(step, time, k, cluster.members.size());
+    append(row, Vec<dim>(cluster.start + cluster.displacement_before));
+    append(row, cluster.velocity);
+    append(row, cluster.rate);
+    append(row, cluster.load.force);
+    append(row, cluster.load.moment);
+    row.insert(row.end(), {cluster.load_work.power(), cluster.load_work.work()});
+    clusters_->append(row);
   }
 }
 

@@ -18,6 +18,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_loads.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_mass_scaling.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
@@ -30,3 +31,5 @@ gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive)
 
 kerf_python_test(case.tools verification/tools.py Tools)
 kerf_python_test(case.boundaries verification/bodies.py Boundaries)
+kerf_python_test(case.clusters verification/bodies.py Clusters)
+kerf_python_test(case.mass_scaling verification/bodies.py MassScaling)
