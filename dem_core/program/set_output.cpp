@@ -1,5 +1,6 @@
 #include "dem_core/program/set_output.hpp"
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -52,7 +53,8 @@ std::vector<double> begin_row(std::uint64_t step, double time, std::size_t set,
 }
 
 template <class Vector> void append(std::vector<double>& row, const Vector& vector) {
-  row.insert(row.end(), vector.begin(), vector.end());
+  for (const double value : vector)
+    row.push_back(value);
 }
 
 } // namespace
@@ -80,14 +82,14 @@ template <int dim> void SetOutput<dim>::write_history(std::uint64_t step, double
     append(row, reaction.displacement);
     append(row, reaction.force);
     append(row, reaction.moment);
-    row.insert(row.end(), {work.power(), work.work()});
+    append(row, std::array{work.power(), work.work()});
     boundary_->append(row);
   }
   for (std::size_t k = 0; k < engine_.applied_forces().size(); ++k) {
     const RunningWork& work = engine_.applied_forces().work_of(k);
     auto row = begin_row(step, time, k, engine_.applied_forces().particles(k).size());
     append(row, engine_.applied_forces().total(k, time));
-    row.insert(row.end(), {work.power(), work.work()});
+    append(row, std::array{work.power(), work.work()});
     loads_->append(row);
   }
   for (std::size_t k = 0; k < engine_.clusters().size(); ++k) {
@@ -98,7 +100,7 @@ template <int dim> void SetOutput<dim>::write_history(std::uint64_t step, double
     append(row, cluster.rate);
     append(row, cluster.load.force);
     append(row, cluster.load.moment);
-    row.insert(row.end(), {cluster.load_work.power(), cluster.load_work.work()});
+    append(row, std::array{cluster.load_work.power(), cluster.load_work.work()});
     clusters_->append(row);
   }
 }
