@@ -81,7 +81,7 @@ std::vector<Key> cluster_keys() {
       {"participants.*.clusters", "dem", list, "", empty, anything, "cluster",
        "particles that are joined to a rigid body: one of box, ids and file"},
       {"participants.*.clusters[].box", "dem", box, "m", none, anything,
-       "[[0.0, 0.0], [2e-3, 2e-3]]",
+       "[[0.01, 0.0], [0.012, 2e-3]]",
        "the lower and upper corner around its particles, before they move", live},
       {"participants.*.clusters[].ids", "dem", numbers, "", none, in(from_zero), "[0, 1, 2]",
        "the ids of its particles"},
