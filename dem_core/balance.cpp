@@ -23,8 +23,9 @@ struct Mean {
 
 template <int dim>
 double unbalanced_force(const Contacts<dim>& contacts, const Particles<dim>& particles,
-                        const Boundary<dim>& boundary, const Loads<dim>& loads) {
-  const Mean resultant = ordered_sum(particles.size(), [&](std::size_t i) {
+                        const Boundary<dim>& boundary, const Loads<dim>& loads,
+                        const Clusters<dim>& clusters) {
+  Mean resultant = ordered_sum(particles.size(), [&](std::size_t i) {
     if (boundary.of(i) != nullptr)
       return Mean{};
     Vec<dim> force = loads.own[i].force;
@@ -34,6 +35,9 @@ double unbalanced_force(const Contacts<dim>& contacts, const Particles<dim>& par
       force += loads.interface_force[i];
     return Mean{force.norm(), 1.0};
   });
+  for (const Cluster<dim>& cluster : clusters.all())
+    if (cluster.is_free)
+      resultant += Mean{cluster.load.force.norm(), 1.0};
   const Mean contact = ordered_sum(contacts.size(), [&](std::size_t k) {
     if (!contacts.bonded[k] && contacts.normal_force[k] == 0.0)
       return Mean{};
@@ -45,8 +49,8 @@ double unbalanced_force(const Contacts<dim>& contacts, const Particles<dim>& par
 }
 
 template double unbalanced_force<2>(const Contacts<2>&, const Particles<2>&, const Boundary<2>&,
-                                    const Loads<2>&);
+                                    const Loads<2>&, const Clusters<2>&);
 template double unbalanced_force<3>(const Contacts<3>&, const Particles<3>&, const Boundary<3>&,
-                                    const Loads<3>&);
+                                    const Loads<3>&, const Clusters<3>&);
 
 } // namespace kerf::dem

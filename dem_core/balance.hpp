@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem_core/boundary.hpp"
+#include "dem_core/clusters.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/energy.hpp"
@@ -14,7 +15,8 @@ namespace kerf::dem {
 /// blended. A body at rest under its loads has a ratio far below one.
 template <int dim>
 double unbalanced_force(const Contacts<dim>& contacts, const Particles<dim>& particles,
-                        const Boundary<dim>& boundary, const Loads<dim>& loads);
+                        const Boundary<dim>& boundary, const Loads<dim>& loads,
+                        const Clusters<dim>& clusters);
 
 /// Kinetic over elastic energy; zero where nothing is stored.
 inline double kinetic_ratio(const Energies& energies) {

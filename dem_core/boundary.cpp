@@ -1,7 +1,10 @@
 #include "dem_core/boundary.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <utility>
 
 namespace kerf::dem {
 
@@ -22,6 +25,13 @@ Vec<dim> step_velocity(const Prescription<dim>& p, std::uint64_t step, double dt
     return Vec<dim>::Zero();
   case Motion::velocity:
     return p.velocity;
+  case Motion::table: {
+    const double now = static_cast<double>(step) * dt, then = static_cast<double>(step + 1) * dt;
+    Vec<dim> v;
+    for (int a = 0; a < dim; ++a)
+      v[a] = p.velocities[a].mean(now, then);
+    return v;
+  }
   case Motion::hann: {
     const auto n = static_cast<double>(step);
     return p.amplitude * ((hann((n + 1.0) * dt, p.duration) - hann(n * dt, p.duration)) / dt);
@@ -35,32 +45,57 @@ Vec<dim> step_velocity(const Prescription<dim>& p, std::uint64_t step, double dt
 template <int dim>
 Boundary<dim>::Boundary(std::vector<Prescription<dim>> prescriptions,
                         std::span<const Vec<dim>> reference, std::uint64_t begin)
-    : prescriptions_(std::move(prescriptions)), begin_(begin), selected_(prescriptions_.size()) {
+    : prescriptions_(std::move(prescriptions)), begin_(begin), sets_(prescriptions_.size()) {
   if (prescriptions_.empty())
     return;
   std::vector<std::uint8_t> components(reference.size(), 0);
-  for (std::size_t k = 0; k < prescriptions_.size(); ++k)
+  for (std::size_t k = prescriptions_.size(); k-- > 0;) { // the later one counts
+    Prescription<dim>& p = prescriptions_[k];
+    if (!(p.axis.norm() > 0.0) || !p.axis.allFinite())
+      throw std::invalid_argument("the axis of a prescribed rotation must have a length");
+    p.axis.normalize();
     for (std::uint32_t i = 0; i < reference.size(); ++i)
-      if (prescriptions_[k].box.contains(reference[i])) {
-        selected_[k].push_back(i);
-        components[i] = static_cast<std::uint8_t>(components[i] | prescriptions_[k].components);
+      if (p.box.contains(reference[i])) {
+        sets_[k].particles.push_back(i);
+        sets_[k].components.push_back(static_cast<std::uint8_t>(p.components & ~components[i]));
+        components[i] = static_cast<std::uint8_t>(components[i] | p.components);
       }
+  }
   entry_.assign(reference.size(), 0);
   for (std::uint32_t i = 0; i < components.size(); ++i)
     if (components[i] != 0) {
-      particles_.push_back(i);
       motion_.emplace_back().components = components[i];
       entry_[i] = static_cast<std::uint32_t>(motion_.size());
     }
 }
 
+template <int dim>
+void Boundary<dim>::carry(std::span<const std::uint32_t> carried, std::size_t particles) {
+  entry_.resize(particles, 0);
+  for (const std::uint32_t i : carried) {
+    assert(entry_[i] == 0);
+    motion_.emplace_back().components = (1u << (dim + 1)) - 1u;
+    entry_[i] = static_cast<std::uint32_t>(motion_.size());
+  }
+}
+
 template <int dim> void Boundary<dim>::advance(std::uint64_t step, double time_step) {
+  const double now = static_cast<double>(step - begin_) * time_step;
+  const double then = static_cast<double>(step - begin_ + 1) * time_step;
   for (std::size_t k = 0; k < prescriptions_.size(); ++k) {
     const Vec<dim> v = step_velocity(prescriptions_[k], step - begin_, time_step);
-    for (const std::uint32_t i : selected_[k])
+    const Rot<dim> omega = prescriptions_[k].rotation_rate.mean(now, then) * prescriptions_[k].axis;
+    for (std::size_t entry = 0; entry < sets_[k].particles.size(); ++entry) {
+      const unsigned components = sets_[k].components[entry];
+      if (components == 0)
+        continue;
+      PrescribedMotion<dim>& motion = *of(sets_[k].particles[entry]);
       for (int a = 0; a < dim; ++a)
-        if ((prescriptions_[k].components >> a & 1u) != 0)
-          of(i)->velocity[a] = v[a];
+        if ((components >> a & 1u) != 0)
+          motion.velocity[a] = v[a];
+      if ((components >> dim & 1u) != 0)
+        motion.angular_velocity = omega;
+    }
   }
 }
 

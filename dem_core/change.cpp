@@ -17,6 +17,8 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
     const double half = 0.5 * time_step_;
     weight_work_at_start_ +=
         weight_work(*change.gravity, particles_, half) - weight_work(gravity_, particles_, half);
+    weight_work_at_start_ +=
+        clusters_.weight_work(*change.gravity, 0.5) - clusters_.weight_work(gravity_, 0.5);
     gravity_ = *change.gravity;
   }
   if (change.friction)
@@ -26,7 +28,9 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
     set_constants(contacts_, particles_, material_);
   if (change.boundary) {
     boundary_ = Boundary<dim>(*change.boundary, particles_.reference, step_);
+    clusters_.carry_members(particles_, boundary_);
     boundary_.advance(step_, time_step_);
+    reactions_.replace_sets(change.boundary->size());
   }
   for (const auto& [index, motion] : change.tools)
     tools_.at(index).redirect(motion, static_cast<double>(step_) * time_step_);

@@ -43,7 +43,13 @@ std::vector<Pair> pairs_within(const Particles<dim>& particles, double reach,
   std::vector<Vec<dim>> position(particles.size());
   for (std::size_t i = 0; i < particles.size(); ++i)
     position[i] = particles.position(i);
-  return find_pairs<dim>(position, particles.radius, reach, period);
+  std::vector<Pair> pairs = find_pairs<dim>(position, particles.radius, reach, period);
+  if (!particles.cluster.empty()) // members of one body do not touch
+    std::erase_if(pairs, [&](const Pair& pair) {
+      return particles.cluster[pair.first] != 0 &&
+             particles.cluster[pair.first] == particles.cluster[pair.second];
+    });
+  return pairs;
 }
 
 /// Calls fill(list, pairs of the block) for every block.

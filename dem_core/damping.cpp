@@ -12,6 +12,8 @@ void add_damping(const Damping& damping, const Particles<dim>& particles, Loads<
   for (std::int64_t i = 0; i < count; ++i) {
     Load<dim>& own = loads.own[i];
     Load<dim>& part = loads.damping[i];
+    if (particles.is_member(i)) // damped as one body
+      continue;
     part.force = damping_force(damping.kind, damping.translation, own.force,
                                particles.velocity[i]); // eq. 18
     part.moment = damping_force(damping.kind, damping.rotation, own.moment,

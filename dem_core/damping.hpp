@@ -32,8 +32,8 @@ Vector damping_force(DampingKind kind, double alpha, const Vector& force,
   return damping;
 }
 
-/// Adds damping to the own resultant of every particle, and keeps it beside for the books.
-/// The velocity is that of half a step before, v^(n-1/2).
+/// Adds damping to the own resultant of every particle but members of clusters, and keeps it beside
+/// for the books. The velocity is that of half a step before, v^(n-1/2).
 template <int dim>
 void add_damping(const Damping& damping, const Particles<dim>& particles, Loads<dim>& loads);
 

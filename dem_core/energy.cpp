@@ -48,6 +48,8 @@ template <int dim>
 double kinetic_energy(const Particles<dim>& p, const Loads<dim>& loads,
                       const Boundary<dim>& boundary, double time_step) {
   return ordered_sum(p.size(), [&](std::size_t i) {
+    if (p.is_member(i))
+      return 0.0;
     const auto before = half_step_before(p, loads, boundary, time_step, i);
     return 0.5 * p.mass[i] * before.velocity.dot(p.velocity[i]) +
            0.5 * p.inertia[i] * before.angular_velocity.dot(p.angular_velocity[i]);
@@ -77,6 +79,8 @@ Vec<dim> momentum(const Particles<dim>& p, const Loads<dim>& loads, const Bounda
                   double time_step) {
   return ordered_sum(p.size(),
                      [&](std::size_t i) {
+                       if (p.is_member(i))
+                         return Total<dim>{};
                        const auto before = half_step_before(p, loads, boundary, time_step, i);
                        return Total<dim>{0.5 * p.mass[i] * (before.velocity + p.velocity[i])};
                      })
@@ -86,23 +90,10 @@ Vec<dim> momentum(const Particles<dim>& p, const Loads<dim>& loads, const Bounda
 template <int dim>
 StepWork step_work(const Particles<dim>& p, const Loads<dim>& loads, const Boundary<dim>& boundary,
                    std::span<const std::uint32_t> touched, double time_step) {
-  const auto prescribed = boundary.particles();
   const auto before = [&](std::size_t i) {
     return half_step_before(p, loads, boundary, time_step, i);
   };
-  StepWork work = ordered_sum(prescribed.size(), [&](std::size_t entry) {
-    const std::uint32_t i = prescribed[entry];
-    const Vec<dim> v_before = before(i).velocity;
-    Vec<dim> reaction = p.mass[i] * ((p.velocity[i] - v_before) / time_step -
-                                     acceleration(p, loads, i).translation); // N
-    for (int axis = 0; axis < dim; ++axis)
-      if (!boundary.prescribes(i, axis))
-        reaction[axis] = 0.0;
-    StepWork one;
-    add_halves(one, &Work::external, reaction, v_before, p.velocity[i], time_step);
-    return one;
-  });
-  work += ordered_sum(touched.size(), [&](std::size_t entry) {
+  StepWork work = ordered_sum(touched.size(), [&](std::size_t entry) {
     const std::uint32_t i = touched[entry];
     StepWork one;
     add_halves(one, &Work::interface, loads.interface_force[i], before(i).velocity, p.velocity[i],

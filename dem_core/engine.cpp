@@ -38,9 +38,11 @@ Engine<dim>::Engine(const Settings<dim>& settings)
       period_(settings.period),
       particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
                                      settings.ids)),
-      boundary_(settings.boundary, particles_.reference), gravity_(settings.gravity),
-      start_rotation_(particles_.size()) {
+      boundary_(settings.boundary, particles_.reference), reactions_(settings.boundary.size()),
+      applied_forces_(settings.applied_forces, particles_), mass_scaling_(settings.mass_scaling),
+      gravity_(settings.gravity), start_rotation_(particles_.size()) {
   check(material_);
+  clusters_ = Clusters<dim>(settings.clusters, particles_, boundary_);
   if (!gravity_.allFinite())
     throw std::invalid_argument("gravity must be finite");
   const double width = skin_width(particles_.radius);
@@ -51,7 +53,13 @@ Engine<dim>::Engine(const Settings<dim>& settings)
   bonds_at_start_ = contacts_.bonds();
   add_tools(settings);
   start_rotation_ = apply_initial_displacements<dim>(initial_, particles_);
+  for (std::size_t i = 0; i < size(); ++i)
+    if (particles_.is_member(i) &&
+        !(particles_.displacement[i].isZero(0.0) && start_rotation_[i].isZero(0.0)))
+      throw std::invalid_argument(fmt::format(
+          "a pulse at the start would deform the cluster of particle {}", particles_.ids[i]));
   loads_.own.resize(size() + contacts_.waiting_rows());
+  scale_mass();
 }
 
 template <int dim> void Engine<dim>::add_tools(const Settings<dim>& settings) {
@@ -91,6 +99,7 @@ template <int dim> void Engine<dim>::set_weights(std::span<const double> weight)
   blend(particles_, weight);
   if (!weight.empty())
     blend(contacts_, particles_);
+  scale_mass();
 }
 
 /// Of every particle, rad²/s².
@@ -100,16 +109,28 @@ template <int dim> std::vector<double> Engine<dim>::row_sums() const {
   const auto count = static_cast<std::int64_t>(size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < count; ++i)
-    sums[i] += row_sum(contacts_, incident, particles_, boundary_, i);
+    sums[i] += row_sum(contacts_, incident, particles_, boundary_, clusters_, i);
   return sums;
+}
+
+/// Of every cluster, rad²/s².
+template <int dim> std::vector<double> Engine<dim>::cluster_sums() const {
+  return clusters_.size() == 0
+             ? std::vector<double>()
+             : dem::cluster_sums<dim>(contacts_, particles_, clusters_, tools_, wall_contacts_);
 }
 
 template <int dim> StepLimit Engine<dim>::step_limit() const {
   const std::vector<double> sums = row_sums();
   const auto largest = std::max_element(sums.begin(), sums.end());
   const auto i = static_cast<std::size_t>(largest - sums.begin());
-  return {with_dashpots(*largest, dashpot_time(contacts_, particles_)),
-          fmt::format("particle {}", particles_.ids[i])};
+  StepLimit limit{*largest, fmt::format("particle {}", particles_.ids[i])};
+  const std::vector<double> of_clusters = cluster_sums();
+  for (std::size_t k = 0; k < of_clusters.size(); ++k)
+    if (of_clusters[k] > limit.omega2)
+      limit = {of_clusters[k], fmt::format("cluster {}", k)};
+  limit.omega2 = with_dashpots(limit.omega2, dashpot_time(contacts_, particles_));
+  return limit;
 }
 
 template <int dim>
@@ -135,6 +156,7 @@ template <int dim> void Engine<dim>::start(double time_step) {
     throw std::invalid_argument(fmt::format("time step {} s must be positive", time_step));
   time_step_ = time_step;
   apply_initial_velocities<dim>(initial_, time_step, particles_);
+  clusters_.start(particles_);
   boundary_.advance(0, time_step);
   weight_work_at_start_ = weight_work(gravity_, particles_, 0.0);
 }
@@ -178,6 +200,7 @@ template <int dim> void Engine<dim>::compute_own_forces() {
                               loads_);
   }
   add_weight(gravity_, particles_, loads_);
+  applied_forces_.add(static_cast<double>(step_) * time_step_, particles_, loads_);
   add_damping(damping_, particles_, loads_);
   forces_are_current_ = true;
 }
@@ -222,7 +245,9 @@ template <int dim> void Engine<dim>::forget_interface_forces() {
 
 template <int dim> void Engine<dim>::integrate() {
   assert(time_step_ > 0.0 && forces_are_current_);
+  clusters_.advance(loads_, damping_, gravity_, step_, time_step_, boundary_);
   const double farthest = dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0);
+  clusters_.place(particles_);
   skin_.wear(farthest);
   for (std::size_t k = 0; k < tools_.size(); ++k) {
     tools_[k].end_step();
@@ -242,15 +267,20 @@ template <int dim> void Engine<dim>::book_step() {
     work_ += step.before;
   work_ahead_ = work_;
   work_ahead_ += step.after;
+  reactions_.book(particles_, loads_, boundary_, time_step_, step_ == 0);
+  applied_forces_.book(static_cast<double>(step_) * time_step_, particles_, loads_, boundary_,
+                       time_step_, step_ == 0);
 }
 
 template <int dim> Energies Engine<dim>::energies() const {
   Energies energies;
-  energies.kinetic = kinetic_energy(particles_, loads_, boundary_, time_step_);
+  energies.kinetic =
+      kinetic_energy(particles_, loads_, boundary_, time_step_) + clusters_.kinetic_energy();
   energies.elastic = elastic_energy(contacts_, particles_);
-  energies.external_work = work_.external;
+  energies.external_work = reactions_.work() + applied_forces_.work() + clusters_.drive_work() +
+                           clusters_.weight_work(gravity_);
   energies.interface_work = work_.interface;
-  energies.damping_dissipation = -work_.damping;
+  energies.damping_dissipation = -work_.damping - clusters_.damping_work();
   for (const ContactLosses& block : contacts_.losses) {
     energies.friction_dissipation += block.friction;
     energies.fracture_dissipation += block.fracture;
@@ -266,11 +296,15 @@ template <int dim> Energies Engine<dim>::energies() const {
 }
 
 template <int dim> Vec<dim> Engine<dim>::momentum() const {
-  return dem::momentum(particles_, loads_, boundary_, time_step_);
+  return dem::momentum(particles_, loads_, boundary_, time_step_) + clusters_.momentum();
+}
+
+template <int dim> Reaction<dim> Engine<dim>::reaction(std::size_t set) const {
+  return dem::reaction(particles_, loads_, boundary_, time_step_, set);
 }
 
 template <int dim> double Engine<dim>::unbalanced_force() const {
-  return dem::unbalanced_force(contacts_, particles_, boundary_, loads_);
+  return dem::unbalanced_force(contacts_, particles_, boundary_, loads_, clusters_);
 }
 
 template <int dim> std::optional<std::uint32_t> Engine<dim>::first_not_finite() const {

@@ -2,13 +2,16 @@
 #pragma once
 
 #include "common/state.hpp"
+#include "dem_core/applied_forces.hpp"
 #include "dem_core/boundary.hpp"
 #include "dem_core/change.hpp"
+#include "dem_core/clusters.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
 #include "dem_core/particles.hpp"
+#include "dem_core/reactions.hpp"
 #include "dem_core/settings.hpp"
 #include "dem_core/tool.hpp"
 #include "dem_core/wall_contacts.hpp"
@@ -23,7 +26,15 @@ namespace kerf::dem {
 
 struct StepLimit {
   double omega2 = 0.0;    // bound of the largest eigenvalue of M^-1 K, rad²/s²
-  std::string limited_by; // the particle that has it
+  std::string limited_by; // the particle or cluster that has it
+};
+
+/// What mass scaling has added.
+struct AddedMass {
+  double added = 0.0, before = 0.0; // kg
+  std::size_t particles = 0;        // heavier than they were; a cluster counts with all of its own
+  double largest_factor = 1.0;
+  std::uint32_t largest_id = 0; // of the particle that has it
 };
 
 /// Flat arrays of points are row-major, [points][dim]. A step is
@@ -53,6 +64,9 @@ public:
   std::span<const WallContacts<dim>> wall_contacts() const noexcept { return wall_contacts_; }
   const std::string& tool_name(std::size_t k) const { return tool_names_[k]; }
 
+  /// Rigid clusters in the order of the settings; loads and works of t_n after integrate().
+  const Clusters<dim>& clusters() const noexcept { return clusters_; }
+
   /// Mean normal stiffness of the bonds of each particle; of the material if it has none, N/m.
   std::vector<double> stiffness() const;
   std::size_t bonds_at_start() const noexcept { return bonds_at_start_; }
@@ -67,6 +81,7 @@ public:
   void set_weights(std::span<const double> weight);
 
   StepLimit step_limit() const;
+  AddedMass added_mass() const;
   /// Blended inverse mass, 0 where prescribed, 1/kg.
   void inverse_mass(std::span<const std::uint32_t> points, std::span<double> out) const;
   /// Own row sum of M^-1 K of each point, rad²/s²; [points]. See row_sum().
@@ -105,6 +120,10 @@ public:
   /// Of t_n, after integrate() of step n.
   Energies energies() const;
   Vec<dim> momentum() const;
+  /// What holds a set of the boundary, and what is applied from outside; of t_n, after integrate().
+  Reaction<dim> reaction(std::size_t set) const;
+  const Reactions<dim>& reactions() const noexcept { return reactions_; }
+  const AppliedForces<dim>& applied_forces() const noexcept { return applied_forces_; }
   /// Mean resultant over mean contact force at t_n, after integrate(); see balance.hpp.
   double unbalanced_force() const;
 
@@ -117,7 +136,9 @@ private:
   friend struct StateParts;
 
   void add_tools(const Settings<dim>& settings);
+  void scale_mass();
   std::vector<double> row_sums() const;
+  std::vector<double> cluster_sums() const;
   void book_step();
   void forget_interface_forces();
 
@@ -128,11 +149,15 @@ private:
   Period<dim> period_;
   Particles<dim> particles_;
   Boundary<dim> boundary_;
+  Clusters<dim> clusters_;
+  Reactions<dim> reactions_;
+  AppliedForces<dim> applied_forces_;
   Contacts<dim> contacts_;
   Skin<dim> skin_;
   std::vector<std::string> tool_names_;
   std::vector<Tool<dim>> tools_;
   std::vector<WallContacts<dim>> wall_contacts_;
+  std::optional<MassScaling> mass_scaling_;
   Vec<dim> gravity_;                              // m/s²
   double weight_work_at_start_ = 0.0;             // J
   std::vector<Aligned<Rot<dim>>> start_rotation_; // made before the start, rad

@@ -42,6 +42,15 @@ Fragments find_fragments(const Contacts<dim>& contacts, const Particles<dim>& pa
     if (contacts.bonded[k])
       sets.join(contacts.first[k], contacts.second[k]);
 
+  std::vector<std::uint32_t> first_of; // member of each cluster, and one more
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (particles.is_member(i)) {
+      const std::uint32_t cluster = particles.cluster[i];
+      first_of.resize(std::max<std::size_t>(first_of.size(), cluster + 1), count);
+      first_of[cluster] = std::min(first_of[cluster], i);
+      sets.join(first_of[cluster], i);
+    }
+
   struct Piece {
     double volume = 0.0;
     std::uint32_t least_id = std::numeric_limits<std::uint32_t>::max();

@@ -11,7 +11,8 @@ void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, Loads<
   const auto count = static_cast<std::int64_t>(particles.size());
 #pragma omp parallel for schedule(static) if (count > particles_per_block)
   for (std::int64_t i = 0; i < count; ++i)
-    loads.own[i].force += particles.mass[i] * gravity;
+    if (!particles.is_member(i))
+      loads.own[i].force += particles.weighed_mass(i) * gravity;
 }
 
 template <int dim>
@@ -19,7 +20,9 @@ double weight_work(const Vec<dim>& gravity, const Particles<dim>& p, double time
   if (gravity.isZero(0.0))
     return 0.0;
   return ordered_sum(p.size(), [&](std::size_t i) {
-    return p.mass[i] * gravity.dot(p.displacement[i] - time_step * p.velocity[i]);
+    if (p.is_member(i))
+      return 0.0;
+    return p.weighed_mass(i) * gravity.dot(p.displacement[i] - time_step * p.velocity[i]);
   });
 }
 

@@ -1,4 +1,4 @@
-// Weight of the particles.
+// Weight of the particles; clusters have theirs as one body.
 #pragma once
 
 #include "dem_core/contact_forces.hpp"

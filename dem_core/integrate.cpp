@@ -10,14 +10,16 @@ namespace {
 /// Puts the given components in place of those that the forces have made.
 template <int dim>
 void prescribe(PrescribedMotion<dim>& prescribed, const Vec<dim>& velocity_before,
-               bool is_first_step, Vec<dim>& v, Rot<dim>& omega) {
+               const Rot<dim>& omega_before, bool is_first_step, Vec<dim>& v, Rot<dim>& omega) {
   for (int axis = 0; axis < dim; ++axis)
     if (prescribed.prescribes(axis)) {
       v[axis] = prescribed.velocity[axis];
       prescribed.velocity_before[axis] = is_first_step ? v[axis] : velocity_before[axis];
     }
-  if (prescribed.holds_rotation())
-    omega.setZero();
+  if (prescribed.holds_rotation()) {
+    omega = prescribed.angular_velocity;
+    prescribed.angular_velocity_before = is_first_step ? omega : omega_before;
+  }
 }
 
 } // namespace
@@ -35,7 +37,7 @@ double integrate(Particles<dim>& p, const Loads<dim>& loads, Boundary<dim>& boun
     Vec<dim> v = (v_before - back * a.translation) + time_step * a.translation;            // eq. 4
     Rot<dim> omega = (p.angular_velocity[i] - back * a.rotation) + time_step * a.rotation; // eq. 7
     if (PrescribedMotion<dim>* prescribed = boundary.of(i))
-      prescribe(*prescribed, v_before, is_first_step, v, omega);
+      prescribe(*prescribed, v_before, p.angular_velocity[i], is_first_step, v, omega);
     p.velocity[i] = v;
     p.angular_velocity[i] = omega;
     p.displacement[i] += time_step * v; // eq. 5

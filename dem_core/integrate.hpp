@@ -49,7 +49,7 @@ HalfStepBefore<dim> half_step_before(const Particles<dim>& particles, const Load
       if (prescribed->prescribes(axis))
         before.velocity[axis] = prescribed->velocity_before[axis];
     if (prescribed->holds_rotation())
-      before.angular_velocity.setZero();
+      before.angular_velocity = prescribed->angular_velocity_before;
   }
   return before;
 }

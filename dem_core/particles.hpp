@@ -42,9 +42,12 @@ template <int dim> struct Particles {
   double density = 0.0;            // kg/m³
   std::vector<std::uint32_t> ids;  // what the user calls them
 
-  std::vector<double> weight;  // 1 - alpha at the centre, > 1 beyond the zone; empty: all are one
-  std::vector<double> mass;    // blended, kg; pi r² rho or 4/3 pi r³ rho
-  std::vector<double> inertia; // blended, kg m²; m r² / 2 or 2/5 m r²
+  std::vector<std::uint32_t> cluster; // rigid body of each, from 1; 0: none; empty: there are none
+
+  std::vector<double> weight;    // 1 - alpha at the centre, > 1 beyond the zone; empty: all are one
+  std::vector<double> mass;      // blended, kg; pi r² rho or 4/3 pi r³ rho
+  std::vector<double> true_mass; // kg; empty: mass is not scaled
+  std::vector<double> inertia;   // blended, kg m²; m r² / 2 or 2/5 m r²
 
   std::vector<Aligned<Vec<dim>>> displacement; // u^n, m
   std::vector<Aligned<Vec<dim>>> velocity;     // v^(n-1/2), v^0 before the first step, m/s
@@ -53,6 +56,8 @@ template <int dim> struct Particles {
 
   std::size_t size() const noexcept { return radius.size(); }
   Vec<dim> position(std::size_t i) const { return reference[i] + displacement[i]; }
+  double weighed_mass(std::size_t i) const { return true_mass.empty() ? mass[i] : true_mass[i]; }
+  bool is_member(std::size_t i) const noexcept { return !cluster.empty() && cluster[i] != 0; }
 };
 
 /// Area of a disc, m², or volume of a sphere, m³.

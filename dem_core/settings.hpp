@@ -5,6 +5,7 @@
 #include "dem_core/tool_motion.hpp"
 #include "dem_core/tool_shape.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -68,18 +69,51 @@ struct Damping {
 enum class Motion {
   fixed,    // does not move
   velocity, // constant velocity
+  table,    // velocity that follows tables of times
   hann,     // displacement amplitude * (1 - cos(2 pi t / duration)) / 2 until t = duration
 };
 
 /// Motion that some particles are given, whatever the forces. Where two of them meet in one
 /// component, the later one counts.
 template <int dim> struct Prescription {
-  Box<dim> box;                          // selects by the reference position
-  std::uint8_t components = 0;           // bit a: axis a; bit dim: every rotation, held at zero
-  Motion motion = Motion::fixed;         //
-  Vec<dim> velocity = Vec<dim>::Zero();  // of Motion::velocity, m/s
-  Vec<dim> amplitude = Vec<dim>::Zero(); // of Motion::hann, m
-  double duration = 0.0;                 // of Motion::hann, s
+  Box<dim> box;                            // selects by the reference position
+  std::uint8_t components = 0;             // bit a: axis a; bit dim: every rotation
+  Motion motion = Motion::fixed;           // along the axes
+  Vec<dim> velocity = Vec<dim>::Zero();    // of Motion::velocity, m/s
+  std::array<TimeTable, dim> velocities{}; // of Motion::table, m/s
+  Vec<dim> amplitude = Vec<dim>::Zero();   // of Motion::hann, m
+  double duration = 0.0;                   // of Motion::hann, s
+  Rot<dim> axis = Rot<dim>::UnitX();       // of each particle's own rotation, of any length
+  TimeTable rotation_rate{};               // about it, rad/s
+};
+
+/// Force from outside on some particles; several of them add up.
+template <int dim> struct AppliedForce {
+  Box<dim> box;                       // selects by the reference position
+  std::array<TimeTable, dim> force{}; // along each axis, N
+  bool is_total = false; // shared by mass, so that all are accelerated alike; else on each particle
+};
+
+/// Particles that are joined to one rigid body; see clusters.hpp.
+template <int dim> struct ClusterSettings {
+  std::string name;
+  std::optional<Box<dim>> box;    // its members, by the reference position,
+  std::vector<std::uint32_t> ids; // or by what the user calls them
+  bool is_free = true;
+  /// Of a body that is not free, with the reference point at the centre unless has_reference; a
+  /// free one begins with this velocity and rotation.
+  ToolMotion<dim> motion;
+  bool has_reference = false;
+  // Instead of what follows from the members, which are taken not to overlap.
+  std::optional<double> mass;                                                   // kg
+  std::optional<Vec<dim>> centre;                                               // m
+  std::optional<Eigen::Matrix<double, rotations<dim>, rotations<dim>>> inertia; // about it, kg m²
+};
+
+/// More mass and inertia than the particles have, which their weight does not feel.
+struct MassScaling {
+  double critical_step = 0.0; // that is wished, s; 0: the factor is given
+  double factor = 1.0;        // of all masses
 };
 
 /// One-way displacement pulse amplitude * (1 + cos(2 pi z / length)) / 2, |z| < length / 2.
@@ -126,9 +160,12 @@ template <int dim> struct Settings {
   ShearIncrement shear_increment = ShearIncrement::midpoint;
   Damping damping;
   std::vector<Prescription<dim>> boundary;
+  std::vector<AppliedForce<dim>> applied_forces;
   std::vector<InitialCondition<dim>> initial;
   Period<dim> period;
   std::vector<ToolSettings<dim>> tools;
+  std::vector<ClusterSettings<dim>> clusters;
+  std::optional<MassScaling> mass_scaling;
   Vec<dim> gravity = Vec<dim>::Zero(); // of the particles; a free tool has its own force, m/s²
 };
 

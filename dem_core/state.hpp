@@ -3,10 +3,13 @@
 #pragma once
 
 #include "common/state.hpp"
+#include "dem_core/applied_forces.hpp"
 #include "dem_core/boundary.hpp"
+#include "dem_core/clusters.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
+#include "dem_core/reactions.hpp"
 #include "dem_core/tool.hpp"
 #include "dem_core/wall_contacts.hpp"
 
@@ -30,21 +33,24 @@ namespace kerf::dem {
 /// A friend of every part.
 struct StateParts {
   template <int dim, class Visit> static void of(Particles<dim>& particles, Visit& visit) {
-    auto& [reference, radius, density, ids, weight, mass, inertia, displacement, velocity,
-           angular_velocity] = particles;
+    auto& [reference, radius, density, ids, cluster, weight, mass, true_mass, inertia, displacement,
+           velocity, angular_velocity] = particles;
     visit("displacement", displacement);
     visit("velocity", velocity);
     visit("angular_velocity", angular_velocity);
   }
 
   template <int dim, class Visit> static void of(PrescribedMotion<dim>& motion, Visit& visit) {
-    auto& [components, velocity, velocity_before] = motion;
+    auto& [components, velocity, angular_velocity, velocity_before, angular_velocity_before] =
+        motion;
     visit("components", components);
     visit("velocity", velocity);
+    visit("angular_velocity", angular_velocity);
     visit("velocity_before", velocity_before);
+    visit("angular_velocity_before", angular_velocity_before);
   }
   template <int dim, class Visit> static void of(Boundary<dim>& boundary, Visit& visit) {
-    auto& [prescriptions, begin, selected, particles, motion, entry] = boundary;
+    auto& [prescriptions, begin, sets, motion, entry] = boundary;
     visit("begin", begin);
     visit("motion", motion);
   }
@@ -189,24 +195,85 @@ struct StateParts {
     visit("strength", strength);
   }
   template <class Visit> static void of(Work& work, Visit& visit) {
-    auto& [external, interface, damping] = work;
-    visit("external", external);
+    auto& [interface, damping] = work;
     visit("interface", interface);
     visit("damping", damping);
+  }
+
+  template <class Visit> static void of(RunningWork& running, Visit& visit) {
+    auto& [power, work, ahead] = running;
+    visit("power", power);
+    visit("work", work);
+    visit("ahead", ahead);
+  }
+  template <int dim, class Visit> static void of(Reactions<dim>& reactions, Visit& visit) {
+    auto& [work, of_former_sets] = reactions;
+    visit("sets", work);
+    visit("of_former_sets", of_former_sets);
+  }
+  template <int dim, class Visit> static void of(AppliedForces<dim>& forces, Visit& visit) {
+    auto& [settings, selected, work] = forces;
+    visit("sets", work);
+  }
+
+  template <class Visit> static void of(Orientation<2>& orientation, Visit& visit) {
+    auto& [angle] = orientation;
+    visit("angle", angle);
+  }
+  template <class Visit> static void of(Orientation<3>& orientation, Visit& visit) {
+    auto& [cosine, axis] = orientation;
+    visit("cosine", cosine);
+    visit("axis", axis);
+  }
+  template <int dim, class Visit> static void of(ClusterLoad<dim>& load, Visit& visit) {
+    auto& [force, moment] = load;
+    visit("force", force);
+    visit("moment", moment);
+  }
+  template <int dim, class Visit> static void of(Cluster<dim>& cluster, Visit& visit) {
+    auto& [members, arms, is_free, start, mass, weighed_mass, inertia, extent, least_inertia,
+           initial, mover, reference, displacement, orientation, velocity, angular_momentum, rate,
+           load, damping, velocity_before, rate_before, rate_after, displacement_before,
+           orientation_before, load_work, damping_work, drive_work] = cluster;
+    if (mover)
+      visit("mover", *mover);
+    visit("displacement", displacement);
+    visit("orientation", orientation);
+    visit("velocity", velocity);
+    visit("angular_momentum", angular_momentum);
+    visit("rate", rate);
+    visit("load", load);
+    visit("damping", damping);
+    visit("velocity_before", velocity_before);
+    visit("rate_before", rate_before);
+    visit("rate_after", rate_after);
+    visit("displacement_before", displacement_before);
+    visit("orientation_before", orientation_before);
+    visit("load_work", load_work);
+    visit("damping_work", damping_work);
+    visit("drive_work", drive_work);
+  }
+  template <int dim, class Visit> static void of(Clusters<dim>& clusters, Visit& visit) {
+    auto& [all] = clusters;
+    visit("body", all);
   }
 
   /// The engine itself; loads are computed anew in every step.
   template <class Whole, class Visit>
   requires requires(Whole& whole) { whole.unbalanced_force(); }
   static void of(Whole& whole, Visit& visit) {
-    auto& [material, damping, shear_increment, initial, period, particles, boundary, contacts, skin,
-           tool_names, tools, wall_contacts, gravity, weight_work_at_start, start_rotation,
-           bonds_at_start, renewals, time_step, step, forces_are_current, loads, touched,
-           is_touched, interface_forces_are_old, cracks, work, work_ahead] = whole;
+    auto& [material, damping, shear_increment, initial, period, particles, boundary, clusters,
+           reactions, applied_forces, contacts, skin, tool_names, tools, wall_contacts,
+           mass_scaling, gravity, weight_work_at_start, start_rotation, bonds_at_start, renewals,
+           time_step, step, forces_are_current, loads, touched, is_touched,
+           interface_forces_are_old, cracks, work, work_ahead] = whole;
     visit("time_step", time_step);
     visit("step", step);
     visit("particles", particles);
     visit("boundary", boundary);
+    visit("reactions", reactions);
+    visit("applied_forces", applied_forces);
+    visit("clusters", clusters);
     visit("contacts", contacts);
     visit("skin", skin);
     visit("tools", tools);

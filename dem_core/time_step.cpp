@@ -1,31 +1,13 @@
 #include "dem_core/time_step.hpp"
 
+#include "dem_core/row_block.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace kerf::dem {
 
 namespace {
-
-constexpr int dofs(int dim) {
-  return dim == 2 ? 3 : 6;
-}
-
-/// Translations u, then scaled rotations r theta.
-template <int dim> using Block = Eigen::Matrix<double, dofs(dim), dofs(dim)>;
-template <int dim> using Row = Eigen::Matrix<double, dofs(dim), 1>;
-/// Of a moment against relative rotation.
-template <int dim> using Moment = Eigen::Matrix<double, rotations<dim>, rotations<dim>>;
-/// What a motion of one particle does to the relative displacement at the point of contact.
-template <int dim> using Kinematics = Eigen::Matrix<double, dim, dofs(dim)>;
-
-/// Velocity of the rotation of `side` around the branch, per unit of r theta: -arm / r theta x n.
-template <int dim> Kinematics<dim> rolling(const Vec<dim>& n, double arm_over_radius) {
-  Kinematics<dim> k = Kinematics<dim>::Zero();
-  for (int a = 0; a < rotations<dim>; ++a)
-    k.col(dim + a) = -arm_over_radius * spin<dim>(Rot<dim>::Unit(a), n);
-  return k;
-}
 
 /// Largest eigenvalue of a particle that touches a tool, without anything else, rad²/s².
 template <int dim>
@@ -45,40 +27,14 @@ double wall_eigenvalue(const WallMaterial& material, const Particles<dim>& p,
 
 template <int dim>
 double row_sum(const Contacts<dim>& c, const Incidence& incidence, const Particles<dim>& p,
-               const Boundary<dim>& boundary, std::size_t i) {
-  Block<dim> own = Block<dim>::Zero(); // summed before absolute values are taken
-  Row<dim> others = Row<dim>::Zero();
-  for (std::uint32_t e = incidence.offset[i]; e < incidence.offset[i + 1]; ++e) {
-    const std::uint32_t k = incidence.entry[e] >> 1;
-    const bool is_second = (incidence.entry[e] & 1u) != 0;
-    const Span<dim> span = span_of(c, p, k);
-    if (!c.carries(k, span.opening))
-      continue;
+               const Boundary<dim>& boundary, const Clusters<dim>& clusters, std::size_t i) {
+  if (p.is_member(i))
+    return 0.0;
+  RowBlock<dim> block;
+  for (std::uint32_t e = incidence.offset[i]; e < incidence.offset[i + 1]; ++e)
+    block.add(c, p, clusters, incidence.entry[e] >> 1, (incidence.entry[e] & 1u) != 0);
 
-    const Vec<dim> n = is_second ? Vec<dim>(-span.normal()) : span.normal(); // away from particle i
-    const ContactStiffness spring = stiffness_of(c, k, span.opening);
-    const double length = span.length;
-    const double lever = length / (p.radius[c.first[k]] + p.radius[c.second[k]]);
-    const Eigen::Matrix<double, dim, dim> normal = n * n.transpose();
-    const Eigen::Matrix<double, dim, dim> stiffness =
-        c.weight[k] * (spring.normal * normal +
-                       spring.tangential * (Eigen::Matrix<double, dim, dim>::Identity() - normal));
-    Kinematics<dim> self = rolling<dim>(n, lever), other = self;
-    self.template leftCols<dim>() = -Eigen::Matrix<double, dim, dim>::Identity();
-    other.template leftCols<dim>().setIdentity();
-    own += self.transpose() * stiffness * self;
-    others += (self.transpose() * stiffness * other).cwiseAbs().rowwise().sum();
-    if (spring.bending > 0.0) {
-      Moment<dim> moment = c.weight[k] * spring.bending * Moment<dim>::Identity();
-      if constexpr (dim == 3)
-        moment += c.weight[k] * (spring.twisting - spring.bending) * normal;
-      const double r = p.radius[i], r_other = p.radius[is_second ? c.first[k] : c.second[k]];
-      own.template bottomRightCorner<rotations<dim>, rotations<dim>>() += moment / (r * r);
-      others.template tail<rotations<dim>>() += moment.cwiseAbs().rowwise().sum() / (r * r_other);
-    }
-  }
-
-  const Row<dim> sums = own.cwiseAbs().rowwise().sum() + others;
+  const auto sums = block.sums();
   double largest = 0.0;
   for (int a = 0; a < dim; ++a)
     if (!boundary.prescribes(i, a))
@@ -148,9 +104,9 @@ std::vector<double> wall_sums(std::span<const Tool<dim>> tools,
 }
 
 template double row_sum<2>(const Contacts<2>&, const Incidence&, const Particles<2>&,
-                           const Boundary<2>&, std::size_t);
+                           const Boundary<2>&, const Clusters<2>&, std::size_t);
 template double row_sum<3>(const Contacts<3>&, const Incidence&, const Particles<3>&,
-                           const Boundary<3>&, std::size_t);
+                           const Boundary<3>&, const Clusters<3>&, std::size_t);
 template std::vector<double> wall_sums<2>(std::span<const Tool<2>>,
                                           std::span<const WallContacts<2>>, const Particles<2>&,
                                           const Boundary<2>&);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem_core/boundary.hpp"
+#include "dem_core/clusters.hpp"
 #include "dem_core/contact.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/tool.hpp"
@@ -19,11 +20,21 @@ namespace kerf::dem {
 ///
 /// K is the stiffness of the contacts that carry force, at their current normals, with the weights
 /// of contacts, masses and inertias. Rotations count as r theta with inertia I / r²: in radians
-/// the bound would depend on the unit of length.
+/// the bound would depend on the unit of length. Members of clusters are prescribed; a particle
+/// that touches one moves against the cluster.
 /// @see S. Gershgorin, Izv. Akad. Nauk SSSR, Otd. Mat. (1931) 749-754
 template <int dim>
 double row_sum(const Contacts<dim>& contacts, const Incidence& incidence,
-               const Particles<dim>& particles, const Boundary<dim>& boundary, std::size_t i);
+               const Particles<dim>& particles, const Boundary<dim>& boundary,
+               const Clusters<dim>& clusters, std::size_t i);
+
+/// The same of every free cluster, rad²/s²; 0 of others. Its rotation counts as L theta, L being
+/// its extent, with its least moment of inertia over L². Its contacts with tools count as in
+/// wall_sums(), those to come with one for each member.
+template <int dim>
+std::vector<double> cluster_sums(const Contacts<dim>& contacts, const Particles<dim>& particles,
+                                 const Clusters<dim>& clusters, std::span<const Tool<dim>> tools,
+                                 std::span<const WallContacts<dim>> wall_contacts);
 
 /// Longest ratio of viscosity to stiffness of the contacts that carry, s; 0 without dashpots.
 template <int dim>

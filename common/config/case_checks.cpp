@@ -52,6 +52,10 @@ private:
                      {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}});
       check_probes(key, participant["probes"]);
       check_tools(key, participant["tools"]);
+      check_loads(key + ".loads", participant["loads"]);
+      check_clusters(key + ".clusters", participant["clusters"]);
+      if (!participant["mass_scaling"].is_null())
+        check_mass_scaling(key, participant);
     } else {
       check_elastic(key + ".material", participant["material"]);
     }
@@ -154,7 +158,7 @@ private:
 
   /// Each has a file of its own, and so have the cracks.
   void check_probes(const string& participant, const json& probes) {
-    std::set<string> names = {"cracks"};
+    std::set<string> names = {"cracks", "boundary", "loads", "clusters"};
     for (std::size_t k = 0; k < probes.size(); ++k)
       check_name(fmt::format("{}.probes[{}]", participant, k), probes[k]["name"],
                  "time series of " + participant, names);
@@ -170,7 +174,7 @@ private:
   }
 
   void check_tools(const string& participant, const json& tools) {
-    std::set<string> names;
+    std::set<string> names = {"boundary", "loads", "clusters"};
     for (std::size_t k = 0; k < tools.size(); ++k) {
       const string key = fmt::format("{}.tools[{}]", participant, k);
       check_name(key, tools[k]["name"], "tools", names);
@@ -190,6 +194,73 @@ private:
     }
   }
 
+  void check_loads(const string& list, const json& loads) {
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      const string key = fmt::format("{}[{}]", list, k);
+      check_one_of(key, loads[k], "force", "forces");
+      if (loads[k]["force"].is_null() && loads[k]["forces"].is_null())
+        problems_.add(key, key + " has neither force nor forces.",
+                      "give the force, or a table of forces.");
+    }
+  }
+
+  void check_clusters(const string& list, const json& clusters) {
+    for (std::size_t k = 0; k < clusters.size(); ++k) {
+      const string key = fmt::format("{}[{}]", list, k);
+      const json& cluster = clusters[k];
+      const std::vector<string> members = given(cluster, {"box", "ids", "file"});
+      if (members.size() != 1)
+        problems_.add(key,
+                      fmt::format("{} has {}.", key,
+                                  members.empty() ? "neither box nor ids nor file"
+                                                  : fmt::format("{}", fmt::join(members, " and "))),
+                      "give one of them: it says which particles are joined.");
+      check_one_of(key, cluster, "velocity", "velocities");
+      check_rotation(key, cluster);
+      const bool is_free = cluster["motion"] == "free";
+      for (const char* name : {"mass", "center", "inertia"})
+        if (!cluster[name].is_null() && (!is_free || !cluster["file"].is_null()))
+          problems_.add(key + "." + name,
+                        fmt::format("{}.{} is given, but it is only of one free body.", key, name),
+                        "leave it out.");
+      for (const char* name : {"velocities", "reference"})
+        if (!cluster[name].is_null() && is_free)
+          problems_.add(key + "." + name,
+                        fmt::format("{}.{} is given, but the body is free.", key, name),
+                        "leave it out, or give motion = \"prescribed\".");
+      if (!is_free && !cluster["file"].is_null())
+        problems_.add(key + ".file", key + ".file is given, but its bodies are free.",
+                      "give motion = \"free\", or a prescribed body by its box or ids.");
+    }
+  }
+
+  /// Waves are slower in heavier particles.
+  void check_mass_scaling(const string& participant, const json& table) {
+    const string key = participant + ".mass_scaling";
+    const json& scaling = table["mass_scaling"];
+    if (scaling["critical_step"].is_null() == scaling["factor"].is_null())
+      problems_.add(key, key + " needs either critical_step or factor.", "give one of them.");
+    const string name = participant.substr(participant.rfind('.') + 1);
+    for (const json& coupling : settings_["couplings"])
+      for (const json& member : coupling["between"])
+        if (member == name)
+          problems_.add(key,
+                        fmt::format("{} is given, but {} is coupled: waves would not cross.", key,
+                                    participant),
+                        "leave it out, or the coupling.");
+    const auto is_wave = [](const json& one) {
+      return one.value("kind", "") == "pulse" || one.value("motion", "") == "hann";
+    };
+    for (const char* list : {"initial", "boundary"})
+      for (const json& one : table[list])
+        if (is_wave(one))
+          problems_.add(key,
+                        fmt::format("{} is given, but {}.{} makes a wave, whose speed it "
+                                    "would change.",
+                                    key, participant, list),
+                        "leave it out; it is for slow loading.");
+  }
+
   /// The history of a tool has the names of its participant and its own.
   void check_history(const string& key, const string& participant, const string& tool) {
     const string name = participant.substr(participant.rfind('.') + 1) + "_" + tool;
@@ -207,9 +278,9 @@ private:
       check_one_of(key + ".rotation", rotation, "rate", "rates");
     if (is_plane_ && has_axis)
       problems_.add(key + ".rotation.axis",
-                    key + ".rotation.axis is given, but in 2D a tool turns in the plane.",
+                    key + ".rotation.axis is given, but in 2D everything turns in the plane.",
                     "leave it out; a positive rate turns x towards y.");
-    const bool turns = !rotation.is_null() || !tool["free_rotation"].is_null();
+    const bool turns = !rotation.is_null() || !tool.value("free_rotation", json()).is_null();
     if (!is_plane_ && turns && !has_axis)
       problems_.add(key + ".rotation.axis", key + ".rotation.axis is missing.",
                     "give the direction of the axis, for example [0.0, 0.0, 1.0].");
@@ -258,8 +329,19 @@ private:
                     "give the tag of a boundary, or a box around points.");
     check_components(key + ".components", boundary["components"]);
     const string motion = boundary["motion"];
+    const bool has_table = !boundary.value("velocities", json()).is_null();
     check_keys_of(key, boundary, "motion", motion,
-                  {{"velocity", {"velocity"}}, {"hann", {"amplitude", "duration"}}});
+                  {{"velocity", {has_table ? "velocities" : "velocity"}},
+                   {"hann", {"amplitude", "duration"}}});
+    if (!boundary.contains("velocities")) // of particles only
+      return;
+    check_one_of(key, boundary, "velocity", "velocities");
+    if (motion != "velocity" && has_table)
+      problems_.add(key + ".velocities",
+                    fmt::format("{0}.velocities is given, but motion = \"{1}\" does not use it.",
+                                key, motion),
+                    "leave it out, or give motion = \"velocity\".");
+    check_rotation(key, boundary);
   }
 
   void check_initial(const string& key, const json& initial) {

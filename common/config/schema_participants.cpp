@@ -134,6 +134,38 @@ std::vector<Key> watch_of_particles() {
   };
 }
 
+/// What acts on particles from outside, beside their weight.
+std::vector<Key> load_keys() {
+  using enum Type;
+  return {
+      {"participants.*.loads", "dem", list, "", empty, anything, "load",
+       "a force on particles; several are added"},
+      {"participants.*.loads[].box", "dem", box, "m", required, anything,
+       "[[-1.0, -1.0], [1.0, 1.0]]",
+       "the lower and upper corner around the particles it acts on, before they move"},
+      {"participants.*.loads[].force", "dem", vector, "N", none, anything, "[0.0, -1e3]",
+       "the force; in 2D per metre of thickness", live},
+      {"participants.*.loads[].forces", "dem", vectors_of_time, "s, N", none, anything,
+       "[[0.0, 0.0, 0.0], [1e-5, 0.0, -1e3]]",
+       "instead of force: a table of it, linear between its times and constant beyond"},
+      {"participants.*.loads[].distribution", "dem", text, "", R"("each")",
+       one_of({"each", "by_mass"}), R"("by_mass")",
+       "how it is meant: the force on each particle, or a total that they share by mass"},
+  };
+}
+
+std::vector<Key> mass_scaling_keys() {
+  using enum Type;
+  return {
+      {"participants.*.mass_scaling", "dem", optional_table, "", none, anything, "mass scaling",
+       "more inertia than the particles have, for a larger time step; static results stay"},
+      {"participants.*.mass_scaling.critical_step", "dem", number, "s", none, in(above_zero),
+       "1e-6", "the critical step that is wished: particles with a smaller one become heavier"},
+      {"participants.*.mass_scaling.factor", "dem", number, "", none, in(from_one), "100.0",
+       "instead of critical_step: the factor of all masses"},
+  };
+}
+
 std::vector<Key> model_of_mesh() {
   using enum Type;
   const Range poisson{.least = -1.0, .most = 0.5, .without_least = true, .without_most = true};
@@ -168,6 +200,19 @@ std::vector<Key> motion_keys(const std::string& kind) {
   using enum Type;
   const bool dem = kind == "dem";
   const std::string everywhere = "[[-1.0, -1.0], [1.0, 1.0]]";
+  const std::vector<Key> particle_motion = {
+      {"participants.*.boundary[].velocities", kind, vectors_of_time, "s, m/s", none, anything,
+       "[[0.0, 0.0, 0.0], [1e-5, 1.0, 0.0]]",
+       "instead of velocity: a table of it, linear between its times and constant beyond"},
+      {"participants.*.boundary[].rotation", kind, optional_table, "", none, anything, "rotation",
+       "the rotation of each particle about its own centre"},
+      {"participants.*.boundary[].rotation.axis", kind, vector, "", none, anything,
+       "[0.0, 0.0, 1.0]", "the direction of the axis; 3D only"},
+      {"participants.*.boundary[].rotation.rate", kind, number, "rad/s", none, anything, "0.0",
+       "the rate"},
+      {"participants.*.boundary[].rotation.rates", kind, numbers_of_time, "s, rad/s", none,
+       anything, "[[0.0, 0.0], [1e-5, 10.0]]", "a table of the rate, linear between its times"},
+  };
   std::vector<Key> keys = {
       {"participants.*.boundary", kind, list, "", empty, anything, "boundary",
        "a prescribed motion"},
@@ -179,7 +224,8 @@ std::vector<Key> motion_keys(const std::string& kind) {
        "the components that it prescribes; every displacement when not given"},
       {"participants.*.boundary[].motion", kind, text, "", required,
        one_of({"fixed", "velocity", "hann"}), dem ? R"("hann")" : R"("fixed")",
-       "the motion: fixed, a constant velocity, or one hann pulse of displacement"},
+       dem ? "the motion: fixed, a velocity, or one hann pulse of displacement"
+           : "the motion: fixed, a constant velocity, or one hann pulse of displacement"},
       {"participants.*.boundary[].velocity", kind, vector, "m/s", none, anything, "[1.0, 0.0]",
        "the velocity of motion = \"velocity\""},
       {"participants.*.boundary[].amplitude", kind, vector, "m", none, anything, "[1e-8, 0.0]",
@@ -210,7 +256,9 @@ std::vector<Key> motion_keys(const std::string& kind) {
       {"participants.*.initial[].axis", kind, text, "", R"("x")", one_of({"x", "y", "z"}), R"("x")",
        "the axis along which the pulse travels"},
   };
-  if (!dem)
+  if (dem)
+    keys.insert(keys.begin() + 5, particle_motion.begin(), particle_motion.end());
+  else
     keys.insert(keys.begin() + 1,
                 {"participants.*.boundary[].tag", kind, text, "", none, anything, R"("right")",
                  "the tag of the boundary that it holds; exactly one of tag and box", live});
@@ -221,7 +269,8 @@ std::vector<Key> motion_keys(const std::string& kind) {
 
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
-                 tool_keys(), motion_keys("dem"), watch_of_particles()});
+                 tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(), mass_scaling_keys(),
+                 watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {

@@ -39,6 +39,8 @@ std::vector<Key> tool_keys();
 std::vector<Key> stop_keys(const std::string& key);
 /// The keys of stages, some of which are keys of particles again.
 std::vector<Key> stage_keys(const std::vector<Key>& particles);
+/// Those of its rigid clusters.
+std::vector<Key> cluster_keys();
 
 /// The keys of "participants.*.particles.packing", which is made before the run.
 std::vector<Key> packing_keys();

@@ -1,4 +1,4 @@
-// The keys of rigid walls and tools.
+// The keys of rigid walls and tools, and of rigid clusters of particles.
 #include "common/config/schema_rows.hpp"
 
 namespace kerf::config {
@@ -72,6 +72,48 @@ std::vector<Key> tool_keys() {
        in(above_zero), "1e-3", "its moment of inertia about the axis"},
       {"participants.*.tools[].free_rotation.moment", "dem", number, "N m", "0.0", anything, "0.0",
        "what else turns it about the axis"},
+  };
+}
+
+std::vector<Key> cluster_keys() {
+  using enum Type;
+  return {
+      {"participants.*.clusters", "dem", list, "", empty, anything, "cluster",
+       "particles that are joined to a rigid body: one of box, ids and file"},
+      {"participants.*.clusters[].box", "dem", box, "m", none, anything,
+       "[[0.01, 0.0], [0.012, 2e-3]]",
+       "the lower and upper corner around its particles, before they move", live},
+      {"participants.*.clusters[].ids", "dem", numbers, "", none, in(from_zero), "[0, 1, 2]",
+       "the ids of its particles"},
+      {"participants.*.clusters[].file", "dem", path, "", none, anything, R"("clumps.txt")",
+       "a file with a line for each particle, of which the last column is a number: a free body "
+       "for "
+       "each of them that is not negative"},
+      {"participants.*.clusters[].motion", "dem", text, "", R"("free")",
+       one_of({"free", "prescribed"}), R"("free")",
+       "how it moves: free, under all its loads, or prescribed"},
+      {"participants.*.clusters[].mass", "dem", number, "kg", none, in(above_zero), "1.0",
+       "its mass; that of its particles when not given; in 2D per metre of thickness"},
+      {"participants.*.clusters[].center", "dem", vector, "m", none, anything, "[1e-3, 1e-3]",
+       "its centre of mass; that of its particles when not given"},
+      {"participants.*.clusters[].inertia", "dem", numbers, "kg m²", none, anything, "[1e-3]",
+       "its moment of inertia about the centre; in 3D xx yy zz yz xz xy; that of its particles, "
+       "without overlap, when not given"},
+      {"participants.*.clusters[].reference", "dem", vector, "m", none, anything, "[0.0, 0.0]",
+       "the point that moves and turns as prescribed; the centre when not given"},
+      {"participants.*.clusters[].velocity", "dem", vector, "m/s", none, anything, "[0.0, 0.0]",
+       "the velocity of the reference point; of a free body at the start"},
+      {"participants.*.clusters[].velocities", "dem", vectors_of_time, "s, m/s", none, anything,
+       "[[0.0, 0.0, 0.0], [1e-5, 0.0, -0.05]]",
+       "a table of the velocity, linear between its times and constant beyond"},
+      {"participants.*.clusters[].rotation", "dem", optional_table, "", none, anything, "rotation",
+       "a rotation about an axis through the reference point; of a free body at the start"},
+      {"participants.*.clusters[].rotation.axis", "dem", vector, "", none, anything,
+       "[0.0, 0.0, 1.0]", "the direction of the axis; 3D only"},
+      {"participants.*.clusters[].rotation.rate", "dem", number, "rad/s", none, anything, "0.0",
+       "the rate"},
+      {"participants.*.clusters[].rotation.rates", "dem", numbers_of_time, "s, rad/s", none,
+       anything, "[[0.0, 0.0], [1e-5, 10.0]]", "a table of the rate, linear between its times"},
   };
 }
 

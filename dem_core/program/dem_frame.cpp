@@ -80,8 +80,12 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
   };
   const auto position = of_particles([&](std::uint32_t i) { return p.position(i); });
   const auto id = of_particles([&](std::uint32_t i) { return std::int64_t{p.ids[i]}; });
-  const auto boundary = of_particles(
-      [&](std::uint32_t i) { return std::int64_t{engine.boundary().of(i) != nullptr}; });
+  const auto boundary = of_particles([&](std::uint32_t i) {
+    return std::int64_t{engine.boundary().of(i) != nullptr && !p.is_member(i)};
+  });
+  const auto cluster = of_particles([&](std::uint32_t i) {
+    return p.is_member(i) ? std::int64_t{p.cluster[i]} - 1 : std::int64_t{-1};
+  });
   const auto weight =
       of_particles([&](std::uint32_t i) { return p.weight.empty() ? 1.0 : p.weight[i]; });
   const auto radius = from(p.radius), mass = from(p.mass);
@@ -121,8 +125,8 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
        .point_fields = {field("id", id), field("radius", radius), field("mass", mass),
                         field("displacement", displacement), field("velocity", velocity),
                         field("angular_velocity", angular_velocity), field("weight", weight),
-                        field("boundary", boundary), field("fragment", fragment),
-                        field("stress", stress)},
+                        field("boundary", boundary), field("cluster", cluster),
+                        field("fragment", fragment), field("stress", stress)},
        .cell_fields = {}},
       {.name = "contacts",
        .positions = {},

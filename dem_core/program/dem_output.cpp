@@ -51,7 +51,8 @@ DemOutput<dim>::DemOutput(Engine<dim>& engine, const Watch<dim>& watch,
       history_(run_folder / "history" / (name + ".csv"), history_columns<dim>(watch.has_stages),
                engine.step()),
       cracks_(run_folder / "history" / (name + "_cracks.csv"), engine.step(), engine.cracks()),
-      tools_(engine, run_folder, name), domain_(watch.domain),
+      tools_(engine, run_folder, name), sets_(engine, watch.has_stages, run_folder, name),
+      domain_(watch.domain),
       stage_(watch.has_stages ? std::optional<std::size_t>(0) : std::nullopt),
       fragments_(find_fragments(engine.contacts(), engine.particles())) {
   for (const Probe<dim>& probe : watch.probes)
@@ -98,6 +99,7 @@ template <int dim> void DemOutput<dim>::write_history(std::uint64_t step, double
     row.push_back(static_cast<double>(*stage_));
   history_.append(row);
   tools_.write_history(step, time);
+  sets_.write_history(step, time);
   for (ProbeFile<dim>& probe : probes_)
     probe.write(step, time, engine_);
 }

@@ -8,6 +8,7 @@
 #include "dem_core/fragments.hpp"
 #include "dem_core/program/crack_file.hpp"
 #include "dem_core/program/probe_file.hpp"
+#include "dem_core/program/set_output.hpp"
 #include "dem_core/program/tool_output.hpp"
 #include "dem_core/program/watch.hpp"
 
@@ -57,6 +58,7 @@ private:
   CrackFile<dim> cracks_;
   std::vector<ProbeFile<dim>> probes_;
   ToolOutput<dim> tools_;
+  SetOutput<dim> sets_;
   std::optional<Box<dim>> domain_;
   std::optional<std::size_t> stage_; // in a run with stages
   Fragments fragments_;

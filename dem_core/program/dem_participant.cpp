@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <optional>
@@ -157,6 +158,35 @@ template <int dim> void check(const Engine<dim>& engine, const Checkpoint& check
   }
 }
 
+/// The interface needs particles that move by their own mass.
+template <int dim>
+void refuse_coupled_clusters(const Engine<dim>& engine, const coupler::Plan& plan) {
+  for (const coupler::Interface& interface : plan.interfaces)
+    for (const std::uint32_t i : interface.points)
+      if (engine.particles().is_member(i))
+        throw SettingsError("clusters",
+                            fmt::format("particle {} of a cluster is in an overlap with a mesh\n"
+                                        "keep clusters out of the overlap",
+                                        engine.particles().ids[i]));
+}
+
+/// What was added to the masses, for the log and the summary; null when they are not scaled.
+template <int dim> json mass_scaling_of(const Engine<dim>& engine, const json& table) {
+  if (table.value("mass_scaling", json()).is_null())
+    return nullptr;
+  const AddedMass mass = engine.added_mass();
+  spdlog::info("mass scaling: {} of {} particles are heavier, {:.4g} kg are added to {:.4g} kg; "
+               "most of all particle {}, by a factor of {:.4g}. Waves are "
+               "slower, weight and static results are not changed.",
+               mass.particles, engine.size(), mass.added, mass.before, mass.largest_id,
+               mass.largest_factor);
+  return {{"particles", mass.particles},
+          {"added_mass", mass.added},
+          {"true_mass", mass.before},
+          {"largest_factor", mass.largest_factor},
+          {"largest_factor_particle", mass.largest_id}};
+}
+
 template <int dim>
 int run(coupler::Participant& broker, const json& table, const json& case_table) {
   Watch<dim> watch = read_watch<dim>(table);
@@ -167,9 +197,11 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
   if (checkpoint)
     check(engine, *checkpoint);
   const coupler::Plan& plan = broker.declare(declare(engine));
+  refuse_coupled_clusters(engine, plan);
   engine.set_weights(plan.weights);
   const coupler::Schedule& schedule = broker.initialize(limits_of(engine, plan));
 
+  const json scaling = mass_scaling_of(engine, table);
   const coupler::Assignment& assignment = broker.assignment();
   if (assignment.plan_only) {
     broker.finalize();
@@ -189,14 +221,16 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
       case_table.value("allow_unstable", false) ? std::nullopt : std::optional(schedule.time_step));
   coupler::run_engine(recorded, broker, plan, schedule, output);
 
-  const json summary = {{"seconds",
-                         {{"forces", recorded.force_seconds},
-                          {"integrate", recorded.integrate_seconds},
-                          {"output", output.seconds()}}},
-                        {"threads", omp_get_max_threads()},
-                        {"particles", engine.size()},
-                        {"contacts", engine.contacts().size()},
-                        {"contact_list_renewals", engine.renewals()}};
+  json summary = {{"seconds",
+                   {{"forces", recorded.force_seconds},
+                    {"integrate", recorded.integrate_seconds},
+                    {"output", output.seconds()}}},
+                  {"threads", omp_get_max_threads()},
+                  {"particles", engine.size()},
+                  {"contacts", engine.contacts().size()},
+                  {"contact_list_renewals", engine.renewals()}};
+  if (!scaling.is_null())
+    summary["mass_scaling"] = scaling;
   broker.finalize(summary.dump());
   return 0;
 }

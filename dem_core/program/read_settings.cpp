@@ -3,6 +3,8 @@
 #include "common/packing_file.hpp"
 #include "dem_core/bonding.hpp"
 #include "dem_core/lattice.hpp"
+#include "dem_core/program/read_clusters.hpp"
+#include "dem_core/program/read_table.hpp"
 #include "dem_core/program/read_tools.hpp"
 
 #include <fmt/format.h>
@@ -106,13 +108,39 @@ template <int dim> Prescription<dim> read_prescription(const Node& node) {
   p.box = node["box"].box<dim>();
   p.components = read_components<dim>(node["components"]);
   p.motion = node["motion"].one_of(motions);
-  if (p.motion == Motion::velocity)
+  if (p.motion == Motion::velocity && node["velocities"].is_null())
     p.velocity = node["velocity"].vector<dim>();
+  if (p.motion == Motion::velocity && !node["velocities"].is_null()) {
+    p.motion = Motion::table;
+    p.velocities = read_vector_table<dim>(node["velocities"]);
+  }
   if (p.motion == Motion::hann) {
     p.amplitude = node["amplitude"].vector<dim>();
     p.duration = node["duration"].positive();
   }
+  if (const Node rotation = node["rotation"]; !rotation.is_null()) {
+    p.components |= static_cast<std::uint8_t>(1u << dim);
+    p.rotation_rate = read_value_or_table(rotation["rate"], rotation["rates"]);
+    if constexpr (dim == 3)
+      p.axis = rotation["axis"].vector<3>();
+    if (!(p.axis.norm() > 0.0))
+      rotation["axis"].fail("the axis has no length");
+  }
   return p;
+}
+
+template <int dim> AppliedForce<dim> read_load(const Node& node) {
+  AppliedForce<dim> load{.box = node["box"].box<dim>(), .force = {}};
+  if (node["forces"].is_null()) {
+    const Vec<dim> force = node["force"].vector<dim>();
+    for (int a = 0; a < dim; ++a)
+      load.force[static_cast<std::size_t>(a)] = force[a];
+  } else {
+    load.force = read_vector_table<dim>(node["forces"]);
+  }
+  const std::map<std::string, bool> distributions = {{"each", false}, {"by_mass", true}};
+  load.is_total = !node["distribution"].is_null() && node["distribution"].one_of(distributions);
+  return load;
 }
 
 template <int dim> InitialCondition<dim> read_initial(const Node& node) {
@@ -188,10 +216,16 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
     s.damping = read_damping(damping);
   for (std::size_t k = 0; k < node["boundary"].size(); ++k)
     s.boundary.push_back(read_prescription<dim>(node["boundary"][k]));
+  for (std::size_t k = 0; k < node["loads"].size(); ++k)
+    s.applied_forces.push_back(read_load<dim>(node["loads"][k]));
   for (std::size_t k = 0; k < node["initial"].size(); ++k)
     s.initial.push_back(read_initial<dim>(node["initial"][k]));
   s.gravity = node["gravity"].vector_or_zero<dim>();
   s.tools = read_tools<dim>(node["tools"]);
+  s.clusters = read_clusters<dim>(node["clusters"], s.positions.size());
+  if (const Node scaling = node["mass_scaling"]; !scaling.is_null())
+    s.mass_scaling = MassScaling{.critical_step = scaling["critical_step"].not_negative_or(0.0),
+                                 .factor = scaling["factor"].number_or(1.0)};
   return s;
 }
 

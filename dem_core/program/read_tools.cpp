@@ -1,31 +1,13 @@
 #include "dem_core/program/read_tools.hpp"
 
 #include "common/surface_file.hpp"
+#include "dem_core/program/read_table.hpp"
 
 #include <stdexcept>
 
 namespace kerf::dem {
 
 namespace {
-
-/// A table of times, column by column; the first is the time.
-TimeTable read_table(const Node& rows, std::size_t column) {
-  std::vector<double> times, values;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    times.push_back(rows[k][0].number());
-    values.push_back(rows[k][column].number());
-  }
-  try {
-    return TimeTable(std::move(times), std::move(values));
-  } catch (const std::invalid_argument& error) {
-    rows.fail(error.what(), "give rows of a time and its values, the times ascending");
-  }
-}
-
-/// One value, or a table of times; zero when neither is given.
-TimeTable read_value_or_table(const Node& value, const Node& rows) {
-  return rows.is_null() ? TimeTable(value.number_or(0.0)) : read_table(rows, 1);
-}
 
 /// Faces of a box, seen from outside.
 template <int dim> Surface<dim> box_surface(const Box<dim>& box) {

@@ -15,11 +15,14 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_wall_contacts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_beam.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_clusters.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_contact_laws.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_critical_step.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_impact.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_loads.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_mass_scaling.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
@@ -33,3 +36,6 @@ kerf_verification(dem_tests)
 gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${KERF_VERIFIES})
 
 kerf_python_test(case.tools verification/tools.py Tools)
+kerf_python_test(case.boundaries verification/bodies.py Boundaries)
+kerf_python_test(case.clusters verification/bodies.py Clusters)
+kerf_python_test(case.mass_scaling verification/bodies.py MassScaling)

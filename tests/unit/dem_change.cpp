@@ -122,7 +122,8 @@ TEST(DemChange, of_a_boundary_lets_particles_go_and_counts_time_anew) {
   dem::Change<2> release;
   release.boundary.emplace();
   engine.change(release);
-  EXPECT_TRUE(engine.boundary().particles().empty());
+  EXPECT_TRUE(engine.boundary().sets().empty());
+  EXPECT_EQ(engine.boundary().of(0), nullptr);
 }
 
 TEST(DemChange, of_a_tool_goes_on_from_its_pose) {
