@@ -30,6 +30,8 @@ tensile_strength = 1.5e3, shear_strength = 1.5e3, friction = 0.5 }
 damping = { translation = 0.2, rotation = 0.2 }
 gravity = [0.0, -9.81]
 boundary = [{ box = [[-1e-4, -1.0], [6e-4, 4e-3]], motion = "fixed" }]
+loads = [{ box = [[10e-3, 9e-3], [16e-3, 12e-3]], forces = [[0.0, 0.0, 0.0], [1e-3, 0.0, -20.0]] }]
+clusters = [{ box = [[25.9e-3, 7e-3], [28.1e-3, 10.1e-3]] }]
 probes = [{ name = "middle", box = [[8e-3, 3e-3], [20e-3, 8e-3]] }]
 
 [[participants.rock.tools]]
@@ -87,6 +89,15 @@ tensile_strength = 2.0, shear_strength = 2.0, bond_radius_ratio = 0.8, rolling_f
 restitution = 0.8 }
 damping = { translation = 0.1, rotation = 0.1 }
 gravity = [0.0, 0.0, -9.81]
+
+[[participants.rock.clusters]]
+box = [[0.9e-3, 0.9e-3, 3e-3], [3.1e-3, 3.1e-3, 4e-3]]
+
+[[participants.rock.clusters]]
+box = [[8.9e-3, -0.1e-3, 5e-3], [11.1e-3, 1.1e-3, 6e-3]]
+motion = "prescribed"
+velocity = [0.1, 0.0, 0.0]
+rotation = { axis = [0.0, 1.0, 0.0], rate = 50.0 }
 
 [[participants.rock.tools]]
 name = "floor"
