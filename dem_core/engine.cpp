@@ -88,9 +88,10 @@ template <int dim> std::vector<double> Engine<dim>::stiffness() const {
 }
 
 template <int dim> double Engine<dim>::memory() const {
-  constexpr std::size_t vec = sizeof(Vec<dim>), rot = sizeof(Rot<dim>), number = sizeof(double);
+  constexpr std::size_t vec = sizeof(Vec<dim>), number = sizeof(double);
+  constexpr std::size_t motion = 2 * sizeof(Aligned<Vec<dim>>) + sizeof(Aligned<Rot<dim>>);
   const std::size_t particle =
-      4 * vec + rot + 3 * number + particles_.weight.size() / size() * number;
+      2 * vec + motion + 3 * number + particles_.weight.size() / size() * number;
   const std::size_t rows = size() + contacts_.waiting_rows() + loads_.damping.size();
   return static_cast<double>(size() * particle + rows * sizeof(Load<dim>)) + contacts_.memory();
 }
