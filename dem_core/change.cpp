@@ -27,8 +27,9 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
   if (change.friction)
     set_constants(contacts_, particles_, material_);
   if (change.boundary) {
-    boundary_ = Boundary<dim>(*change.boundary, particles_.reference, step_);
-    clusters_.carry_members(particles_, boundary_);
+    Boundary<dim> boundary(*change.boundary, particles_.reference, step_);
+    clusters_.carry_members(particles_, boundary);
+    boundary_ = std::move(boundary);
     boundary_.advance(step_, time_step_);
     reactions_.replace_sets(change.boundary->size());
   }
