@@ -75,15 +75,15 @@ KERF_INLINE Mask load_flags(const std::uint8_t* from) {
   return Mask{-static_cast<std::int64_t>(from[0] != 0), -static_cast<std::int64_t>(from[1] != 0)};
 #endif
 }
-/// Row p of an array of aligned vectors: two numbers a row in 2D, four in 3D.
-template <int dim> KERF_INLINE Row4 load_row(const double* array, std::size_t p) {
+/// A vector of two (2D) or three numbers; in 3D a fourth fills its row.
+template <int dim> KERF_INLINE Row4 load_row(const double* from) {
   if constexpr (dim == 2) {
     Row2 row;
-    std::memcpy(&row, array + 2 * p, sizeof row);
+    std::memcpy(&row, from, sizeof row);
     return __builtin_shufflevector(row, Row2{}, 0, 1, 2, 3);
   } else {
     Row4 row;
-    std::memcpy(&row, array + 4 * p, sizeof row);
+    std::memcpy(&row, from, sizeof row);
     return row;
   }
 }
@@ -137,6 +137,12 @@ KERF_INLINE Lanes inverse(const Lanes& x) {
 }
 KERF_INLINE Lanes absolute(const Lanes& x) {
   return (Lanes)((Mask)x & INT64_MAX);
+}
+KERF_INLINE double smallest(const Lanes& x) {
+  double least = x[0];
+  for (int l = 1; l < width; ++l)
+    least = x[l] < least ? x[l] : least;
+  return least;
 }
 /// Sum of the lanes, pairwise.
 KERF_INLINE double total(const Lanes& x) {

@@ -102,6 +102,8 @@ template <int dim> struct Contacts {
 
   std::vector<ContactLosses> losses; // [blocks]
 
+  std::vector<double> clear_until; // what the kernels remember, see ContactView
+
   std::size_t size() const noexcept { return first.size(); }
   std::size_t blocks() const noexcept { return block_offset.size() - 1; }
   std::size_t waiting_rows() const noexcept { return incoming_row.size(); }

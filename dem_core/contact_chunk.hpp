@@ -6,6 +6,7 @@
 
 namespace kerf::KERF_ISA {
 
+using dem::chunk_size;
 using dem::ContactView;
 
 /// A vector of each lane.
@@ -39,7 +40,9 @@ KERF_INLINE LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) 
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 
-inline constexpr int chunk_size = 64;
+/// Numbers that the arrays of a vector and of the load have for each particle.
+template <int dim> inline constexpr std::uint32_t row_size = dim == 2 ? 2 : 4;
+template <int dim> inline constexpr std::uint32_t load_size = dim == 2 ? 4 : 8;
 
 /// Some contacts of one block. They go through several short passes, each over all of them: what is
 /// long for one contact, from its first load to its last addition, then overlaps with others.
@@ -48,35 +51,39 @@ template <int dim> struct Chunk {
   static constexpr int size = chunk_size, turns = ContactView<dim>::shear_components;
   std::size_t begin;
   int count;
-  const std::uint32_t *first, *second; // particles
+  // Where the motion of the particles begins, and their loads, in numbers.
+  std::uint32_t first[size], second[size], load_first[size], load_second[size];
 
   double relative[dim][size]; // u_j - u_i, m
   double moved[dim][size];    // v_j - v_i
   double turn_first[turns][size], turn_second[turns][size];
-  double normal[dim][size], length[size], opening[size];        // at the end of the increment; m
-  double trial[turns][size], slip[turns][size];                 // see Carried; N, m
-  double carried_moment[turns][size];                           // N m
-  double force[dim][size];                                      // on the first, N
-  double moment_first[turns][size], moment_second[turns][size]; // N m
+  double normal[dim][size], length[size], opening[size]; // at the end of the increment; m
+  double trial[turns][size], slip[turns][size];          // see Carried; N, m
+  double carried_moment[turns][size];                    // N m
 
   KERF_INLINE void start(const ContactView<dim>& c, std::size_t from, std::size_t end) {
     begin = from;
     count = end - from < size ? static_cast<int>(end - from) : size;
-    first = c.first + begin;
-    second = c.second + begin;
-    if (count % width != 0) {
-      for (int l = 0; l < count + width - 1; ++l) {
-        const int k = l < count ? l : count - 1;
-        padded[0][l] = first[k];
-        padded[1][l] = second[k];
+    if (count == size)
+      set_rows(c, size);
+    else {
+      set_rows(c, count);
+      for (int l = count; l % width != 0; ++l) {
+        first[l] = first[count - 1];
+        second[l] = second[count - 1];
       }
-      first = padded[0];
-      second = padded[1];
     }
   }
 
 private:
-  std::uint32_t padded[2][size + width];
+  KERF_INLINE void set_rows(const ContactView<dim>& c, int n) {
+    for (int l = 0; l < n; ++l) {
+      first[l] = row_size<dim> * c.first[begin + l];
+      second[l] = row_size<dim> * c.second[begin + l];
+      load_first[l] = load_size<dim> * c.first[begin + l];
+      load_second[l] = load_size<dim> * c.target[begin + l];
+    }
+  }
 };
 
 /// Lanes at to at + width of a chunk. `whole`: all of them are contacts.
@@ -155,34 +162,42 @@ KERF_INLINE void set_column(double (&of)[size][chunk_size], int at, const Row4 (
     store(&of[a][at], columns[a]);
 }
 
-/// A vector of each particle, the second less the first.
+/// From the first to the second particle of a contact, in the arrays of a vector.
 template <int dim>
-KERF_INLINE void gather_difference(const Chunk<dim>& chunk, const double* array,
-                                   double (&of)[dim][chunk_size]) {
-  for (int at = 0; at < chunk.count; at += width) {
-    Row4 rows[width];
-    for (int l = 0; l < width; ++l)
-      rows[l] =
-          load_row<dim>(array, chunk.second[at + l]) - load_row<dim>(array, chunk.first[at + l]);
-    set_column(of, at, rows);
-  }
+KERF_INLINE Row4 difference(const double* array, std::size_t first, std::size_t second) {
+  return load_row<dim>(array + second) - load_row<dim>(array + first);
 }
 
-/// The rotation of one particle of each contact.
-template <int dim>
-KERF_INLINE void gather_rotation(const Chunk<dim>& chunk, const double* array,
-                                 const std::uint32_t* particle,
-                                 double (&of)[Chunk<dim>::turns][chunk_size]) {
-  for (int at = 0; at < chunk.count; at += width)
-    if constexpr (dim == 2) {
-      for (int l = 0; l < width; ++l)
-        of[0][at + l] = array[particle[at + l]];
-    } else {
-      Row4 rows[width];
-      for (int l = 0; l < width; ++l)
-        rows[l] = load_row<3>(array, particle[at + l]);
-      set_column(of, at, rows);
+/// Where the particles of each contact are to each other, and how they have moved.
+template <int dim, bool branch, bool motion>
+KERF_INLINE void gather(const ContactView<dim>& c, Chunk<dim>& chunk) {
+  for (int at = 0; at < chunk.count; at += width) {
+    Row4 relative[width], moved[width];
+    [[maybe_unused]] Row4 turn_first[width], turn_second[width];
+    for (int l = 0; l < width; ++l) {
+      const std::size_t i = chunk.first[at + l], j = chunk.second[at + l];
+      if constexpr (branch)
+        relative[l] = difference<dim>(c.displacement, i, j);
+      if constexpr (!motion)
+        continue;
+      moved[l] = difference<dim>(c.translation, i, j);
+      if constexpr (dim == 2) {
+        chunk.turn_first[0][at + l] = c.rotation[i / 2];
+        chunk.turn_second[0][at + l] = c.rotation[j / 2];
+      } else {
+        turn_first[l] = load_row<3>(c.rotation + i);
+        turn_second[l] = load_row<3>(c.rotation + j);
+      }
     }
+    if constexpr (branch)
+      set_column(chunk.relative, at, relative);
+    if constexpr (motion)
+      set_column(chunk.moved, at, moved);
+    if constexpr (motion && dim == 3) {
+      set_column(chunk.turn_first, at, turn_first);
+      set_column(chunk.turn_second, at, turn_second);
+    }
+  }
 }
 
 template <class Row> KERF_INLINE void add(double* to, const Row& load) {
@@ -193,50 +208,55 @@ template <class Row> KERF_INLINE void add(double* to, const Row& load) {
 }
 
 /// Adds the columns, force and moment, to the load of one particle of each contact.
+template <bool whole>
 KERF_INLINE void add_to_loads(double* loads, const std::uint32_t* row, int count,
                               const Lanes (&columns)[4]) {
   Row4 rows[width];
   to_rows(columns, rows);
-  for (int l = 0; l < width && l < count; ++l)
-    add(loads + 4 * std::size_t{row[l]}, rows[l]);
+  for (int l = 0; l < width; ++l)
+    if (whole || l < count)
+      add(loads + row[l], rows[l]);
 }
+template <bool whole>
 KERF_INLINE void add_to_loads(double* loads, const std::uint32_t* row, int count,
                               const Lanes (&columns)[8]) {
 #if defined(__AVX512F__)
   Row8 rows[width];
   to_rows(columns, rows);
-  for (int l = 0; l < width && l < count; ++l)
-    add(loads + 8 * std::size_t{row[l]}, rows[l]);
+  for (int l = 0; l < width; ++l)
+    if (whole || l < count)
+      add(loads + row[l], rows[l]);
 #else
   Row4 front[width], back[width];
   to_rows({columns[0], columns[1], columns[2], columns[3]}, front);
   to_rows({columns[4], columns[5], columns[6], columns[7]}, back);
-  for (int l = 0; l < width && l < count; ++l) {
-    add(loads + 8 * std::size_t{row[l]}, front[l]);
-    add(loads + 8 * std::size_t{row[l]} + 4, back[l]);
-  }
+  for (int l = 0; l < width; ++l)
+    if (whole || l < count) {
+      add(loads + row[l], front[l]);
+      add(loads + row[l] + 4, back[l]);
+    }
 #endif
 }
 
-/// Adds the force to the load of the first particle and its opposite to that of the second; each
-/// gets its part of the couple.
-template <int dim> KERF_INLINE void scatter(const ContactView<dim>& c, const Chunk<dim>& chunk) {
-  for (int at = 0; at < chunk.count; at += width) {
-    const int count = chunk.count - at;
-    const Batch<dim, true> batch(c, chunk, at);
-    const LaneVector<dim> F = batch.column(chunk.force);
-    const auto M_i = batch.column(chunk.moment_first), M_j = batch.column(chunk.moment_second);
-    const std::uint32_t *first = chunk.first + at, *second = c.target + chunk.begin + at;
-    if constexpr (dim == 2) {
-      add_to_loads(c.loads, first, count, {F[0], F[1], M_i[0], Lanes{}});
-      add_to_loads(c.loads, second, count, {-F[0], -F[1], M_j[0], Lanes{}});
-    } else {
-      add_to_loads(c.loads, first, count,
-                   {F[0], F[1], F[2], M_i[0], M_i[1], M_i[2], Lanes{}, Lanes{}});
-      add_to_loads(c.loads, second, count,
-                   {-F[0], -F[1], -F[2], M_j[0], M_j[1], M_j[2], Lanes{}, Lanes{}});
-    }
-  }
+/// Adds the force F to the load of the first particle and its opposite to that of the second; each
+/// gets its moment.
+template <bool whole>
+KERF_INLINE void scatter(const Batch<2, whole>& batch, const LaneVector<2>& F,
+                         const LaneVector<1>& M_i, const LaneVector<1>& M_j) {
+  const ContactView<2>& c = batch.c;
+  add_to_loads<whole>(c.loads, batch.chunk.load_first + batch.at, batch.count,
+                      {F[0], F[1], M_i[0], Lanes{}});
+  add_to_loads<whole>(c.loads, batch.chunk.load_second + batch.at, batch.count,
+                      {-F[0], -F[1], M_j[0], Lanes{}});
+}
+template <bool whole>
+KERF_INLINE void scatter(const Batch<3, whole>& batch, const LaneVector<3>& F,
+                         const LaneVector<3>& M_i, const LaneVector<3>& M_j) {
+  const ContactView<3>& c = batch.c;
+  add_to_loads<whole>(c.loads, batch.chunk.load_first + batch.at, batch.count,
+                      {F[0], F[1], F[2], M_i[0], M_i[1], M_i[2], Lanes{}, Lanes{}});
+  add_to_loads<whole>(c.loads, batch.chunk.load_second + batch.at, batch.count,
+                      {-F[0], -F[1], -F[2], M_j[0], M_j[1], M_j[2], Lanes{}, Lanes{}});
 }
 
 } // namespace kerf::KERF_ISA

@@ -68,6 +68,7 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
   view.rate = increment.time > 0.0 ? 1.0 / increment.time : 0.0;
   view.half = rule == ShearIncrement::midpoint ? 0.5 : 0.0;
   view.loads = reinterpret_cast<double*>(loads.own.data());
+  view.travelled = increment.travelled;
   view.on_break = append;
   return view;
 }
@@ -80,6 +81,7 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
                                           Loads<dim>& loads) {
   const std::size_t n = particles.size();
   loads.own.resize(n + contacts.waiting_rows());
+  contacts.clear_until.resize(contacts.size() / chunk_size + contacts.blocks() + 1);
   const auto all = view_of(contacts, particles, increment, rule, loads);
   const ContactKernel<dim> compute = kernel<dim>(contacts.law);
   const auto blocks = static_cast<std::int64_t>(contacts.blocks());
@@ -99,6 +101,8 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
       view.begin = contacts.block_offset[b];
       view.loose = contacts.loose_offset[b];
       view.end = contacts.block_offset[b + 1];
+      view.clear_until =
+          &contacts.clear_until[view.loose / chunk_size + static_cast<std::size_t>(b)];
       view.breaks = &breaks[b];
       compute(view);
       contacts.losses[b].friction += view.friction_loss;

@@ -4,6 +4,7 @@
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_view.hpp"
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,9 @@ template <int dim> struct Increment {
   std::span<const Aligned<Rot<dim>>> rotation;    // [n]
   double scale = 1.0;
   double time = 0.0; // that it took, s; 0: none, and dashpots do not act
+  /// The way of the farthest particle of every step so far, summed up, m: pairs that are apart are
+  /// not looked at before two particles can have closed their gap. Nan: not known.
+  double travelled = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Force in N and moment in N m on a particle: one cache line, or half of one in 2D.

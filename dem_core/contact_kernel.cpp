@@ -57,46 +57,62 @@ KERF_INLINE Carried<2> carry(const Batch<2, whole>& batch, const Increments<2>& 
   return result;
 }
 
-/// The stored force F makes the rotation R of the branch, the shortest one, with the mean turn of
-/// both particles about it. The slip s is that of the middle of the increment: half of the growth
-/// makes the rotation too, R (F + k_t s / 2) + k_t s / 2, which is the same there and back.
-///
-/// The rotation has the Gibbs vector t, tan(angle / 2) along its axis: b' - b = t x (b' + b) for a
-/// branch that keeps its length.
+/// The stored force F makes the shortest rotation from the branch at the start to the one at the
+/// end, which is two half turns, about the branch at the start and about the middle, and the mean
+/// turn of both particles about the branch. The slip s is that of the middle of the increment: half
+/// of the growth makes the rotation R too, R (F + k_t s / 2) + k_t s / 2, which is the same there
+/// and back.
+struct Turn {
+  LaneVector<3> middle, normal; // the normal at the end
+  Lanes twice_inverse_middle2;  // 1/m²
+  Lanes q, u;                   // of the turn about the normal: tan(angle / 2), sin(angle)
+
+  /// A half turn about the middle, and the opposite of that.
+  KERF_INLINE LaneVector<3> mirrored(const LaneVector<3>& v) const {
+    return sum(v, -twice_inverse_middle2 * dot(v, middle), middle);
+  }
+  /// Of a vector across the branch at the start, which the half turn about that makes its opposite.
+  KERF_INLINE LaneVector<3> of_tangent(const LaneVector<3>& v) const {
+    const LaneVector<3> at_end = mirrored(v);
+    return sum(at_end, u, sum(cross(normal, at_end), -q, at_end));
+  }
+  KERF_INLINE LaneVector<3> of_any(const LaneVector<3>& v, const LaneVector<3>& start) const {
+    const Lanes along = dot(v, start) * inverse(dot(start, start));
+    return sum(of_tangent(sum(v, -along, start)), -along, mirrored(start));
+  }
+};
+
 template <bool with_moment, bool whole>
 KERF_INLINE Carried<3> carry(const Batch<3, whole>& batch, const Increments<3>& m,
                              const Lanes& fade, const Lanes& k_t) {
   const ContactView<3>& c = batch.c;
   const LaneVector<3> branch = m.branch();
   const LaneVector<3> middle = sum(branch, broadcast(-0.5), m.moved);
-  const Lanes inverse_middle2 = inverse(dot(middle, middle));
+  const Lanes inverse_middle = inverse_square_root(dot(middle, middle));
+  const Lanes inverse_middle2 = inverse_middle * inverse_middle;
 
-  LaneVector<3> turned;
-  for (int a = 0; a < 3; ++a)
-    turned[a] = m.turn_j[a] + m.share * (m.turn_i[a] - m.turn_j[a]);
   const bool at_end = c.half == 0.0;
   const LaneVector<3>& lever = at_end ? branch : middle;
   const Lanes inverse_lever2 = at_end ? inverse(dot(branch, branch)) : inverse_middle2;
+  LaneVector<3> turn; // of the branch, less that of the particles where they touch
+  const LaneVector<3> swept = cross(lever, m.moved);
+  for (int a = 0; a < 3; ++a)
+    turn[a] = inverse_lever2 * swept[a] - m.turn_j[a] - m.share * (m.turn_i[a] - m.turn_j[a]);
   Carried<3> result;
-  result.slip = sum(m.moved, broadcast(-1.0), cross(turned, lever));
-  result.slip = sum(result.slip, -inverse_lever2 * dot(m.moved, lever), lever);
+  result.slip = cross(turn, lever);
 
-  const Lanes half_inverse = 0.5 * inverse_middle2;
-  const Lanes spin = 0.5 * half_inverse * (dot(m.turn_i, middle) + dot(m.turn_j, middle));
-  const LaneVector<3> t = sum(scaled(half_inverse, cross(middle, m.moved)), spin, middle);
-  const Lanes twice_inverse = 2.0 * inverse(1.0 + dot(t, t));
-  const auto rotated = [&](const LaneVector<3>& v) {
-    const LaneVector<3> tv = cross(t, v);
-    return sum(v, twice_inverse, sum(tv, broadcast(1.0), cross(t, tv)));
-  };
+  Turn R = {middle, m.normal, 2.0 * inverse_middle2, {}, {}};
+  R.q = 0.25 * inverse_middle * dot(sum(m.turn_i, broadcast(1.0), m.turn_j), middle);
+  R.u = 2.0 * R.q * inverse(1.0 + R.q * R.q);
   const LaneVector<3> force = {
       {fade * batch.get(c.shear[0]), fade * batch.get(c.shear[1]), fade * batch.get(c.shear[2])}};
   const LaneVector<3> trial =
-      sum(rotated(sum(force, c.half * k_t, result.slip)), (1.0 - c.half) * k_t, result.slip);
+      sum(R.of_tangent(sum(force, c.half * k_t, result.slip)), (1.0 - c.half) * k_t, result.slip);
   result.trial = sum(trial, -dot(trial, m.normal), m.normal);
   if constexpr (with_moment)
     result.moment =
-        rotated({{batch.get(c.moment[0]), batch.get(c.moment[1]), batch.get(c.moment[2])}});
+        R.of_any({{batch.get(c.moment[0]), batch.get(c.moment[1]), batch.get(c.moment[2])}},
+                 sum(branch, broadcast(-1.0), m.moved));
   return result;
 }
 
@@ -170,13 +186,18 @@ KERF_INLINE void find_opening(const Batch<dim, whole>& batch, Chunk<dim>& chunk)
   store(&chunk.opening[batch.at], growth * inverse(length + rest));
 }
 
-/// True for pairs within the skin that are apart and were: there is nothing to do.
-template <int dim> KERF_INLINE bool all_apart(const ContactView<dim>& c, const Chunk<dim>& chunk) {
+/// The smallest gap of pairs that are apart and were, for which there is nothing to do; 0 when one
+/// touches or did.
+template <int dim>
+KERF_INLINE double least_gap(const ContactView<dim>& c, const Chunk<dim>& chunk) {
   Mask touch{};
+  Lanes least = broadcast(__builtin_inf());
   for_batches(c, chunk, [&](auto batch) KERF_LAMBDA {
-    touch |= (load(&chunk.opening[batch.at]) < 0.0) | (batch.get(c.normal_force) != 0.0);
+    const Lanes gap = load(&chunk.opening[batch.at]);
+    touch |= ~(gap > 0.0) | (batch.get(c.normal_force) != 0.0);
+    least = select(gap < least, gap, least);
   });
-  return !any(touch);
+  return any(touch) ? 0.0 : smallest(least);
 }
 
 /// The second pass: what comes along, eq. 13.
@@ -305,9 +326,7 @@ KERF_INLINE void bound(ContactView<dim>& c, const Batch<dim, whole>& batch, Chun
     on_first = sum(on_first, broadcast(1.0), M);
     on_second = sum(on_second, broadcast(-1.0), M);
   }
-  batch.set_column(chunk.force, F);
-  batch.set_column(chunk.moment_first, on_first);
-  batch.set_column(chunk.moment_second, on_second);
+  scatter(batch, F, on_first, on_second);
 }
 
 KERF_INLINE std::size_t least(std::size_t a, std::size_t b) {
@@ -339,25 +358,46 @@ KERF_INLINE void prefetch(const ContactView<dim>& c, std::size_t begin, std::siz
   }
 }
 
-/// Contacts begin to end of one block: all of them have or had a bond, or none.
+/// Of a chunk that is gathered and knows its openings.
 template <int dim, class Law, bool more, bool bonds>
-KERF_INLINE void compute_all(ContactView<dim>& c, std::size_t begin, std::size_t end) {
+KERF_INLINE void finish(ContactView<dim>& c, Chunk<dim>& chunk) {
+  for_batches(c, chunk,
+              [&](auto batch) KERF_LAMBDA { carry_history<dim, Law, more>(batch, chunk); });
+  for_batches(c, chunk,
+              [&](auto batch) KERF_LAMBDA { bound<dim, Law, more, bonds>(c, batch, chunk); });
+}
+
+/// What has or had a bond.
+template <int dim, class Law, bool more>
+KERF_INLINE void compute_bonds(ContactView<dim>& c, std::size_t begin, std::size_t end) {
   Chunk<dim> chunk;
   for (std::size_t k = begin; k < end; k += chunk_size) {
     chunk.start(c, k, end);
     prefetch(c, least(end, k + 2 * chunk_size), least(end, k + 3 * chunk_size));
-    gather_difference(chunk, c.displacement, chunk.relative);
+    gather<dim, true, true>(c, chunk);
     for_batches(c, chunk, [&](auto batch) KERF_LAMBDA { find_opening<dim>(batch, chunk); });
-    if (!bonds && all_apart(c, chunk))
+    finish<dim, Law, more, true>(c, chunk);
+  }
+}
+
+/// Pairs that never had a bond. Many are apart, and stay so for some time.
+template <int dim, class Law, bool more>
+KERF_INLINE void compute_loose(ContactView<dim>& c, std::size_t begin, std::size_t end) {
+  Chunk<dim> chunk;
+  double* clear_until = c.clear_until;
+  for (std::size_t k = begin; k < end; k += chunk_size, ++clear_until) {
+    if (c.travelled < *clear_until)
       continue;
-    gather_difference(chunk, c.translation, chunk.moved);
-    gather_rotation(chunk, c.rotation, chunk.first, chunk.turn_first);
-    gather_rotation(chunk, c.rotation, chunk.second, chunk.turn_second);
-    for_batches(c, chunk,
-                [&](auto batch) KERF_LAMBDA { carry_history<dim, Law, more>(batch, chunk); });
-    for_batches(c, chunk,
-                [&](auto batch) KERF_LAMBDA { bound<dim, Law, more, bonds>(c, batch, chunk); });
-    scatter(c, chunk);
+    chunk.start(c, k, end);
+    prefetch(c, least(end, k + 2 * chunk_size), least(end, k + 3 * chunk_size));
+    gather<dim, true, false>(c, chunk);
+    for_batches(c, chunk, [&](auto batch) KERF_LAMBDA { find_opening<dim>(batch, chunk); });
+    if (const double gap = least_gap(c, chunk); gap > 0.0) {
+      *clear_until = c.travelled + 0.4999 * gap; // both may come nearer
+      continue;
+    }
+    gather<dim, false, true>(c, chunk);
+    finish<dim, Law, more, false>(c, chunk);
   }
 }
 
@@ -366,8 +406,8 @@ KERF_INLINE void compute_all(ContactView<dim>& c, std::size_t begin, std::size_t
 template <int dim, class Law, bool more> void contact_kernel(ContactView<dim>& view) {
   ContactView<dim> c = view; // a copy: nothing else can change its constants
   if constexpr (Law::has_bonds)
-    compute_all<dim, Law, more, true>(c, c.begin, c.loose);
-  compute_all<dim, Law, more, false>(c, c.loose, c.end);
+    compute_bonds<dim, Law, more>(c, c.begin, c.loose);
+  compute_loose<dim, Law, more>(c, c.loose, c.end);
   view.friction_loss += c.friction_loss;
   view.fracture_loss += c.fracture_loss;
   view.viscous_loss += c.viscous_loss;

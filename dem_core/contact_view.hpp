@@ -11,6 +11,9 @@ enum class ContactLaw : std::uint8_t { linear, linear_with_moments, hertz_mindli
 
 enum class BreakMode : std::uint8_t { tension, shear };
 
+/// Contacts go through a kernel in chunks of this many.
+inline constexpr int chunk_size = 64;
+
 /// A constant of the contacts: one for all, or one for each.
 struct ContactConstant {
   const double* each; // null: `all` counts
@@ -37,6 +40,9 @@ template <int dim> struct ContactView {
   double* normal_force;
   double* shear[shear_components];
   double* moment[shear_components];
+
+  double travelled;    // see Increment, m
+  double* clear_until; // of each chunk from `loose` on: nobody touches until then, m
 
   // A row of four (3D) or dim numbers a particle, a rotation in 2D is one.
   const double *displacement, *translation, *rotation;

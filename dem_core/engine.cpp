@@ -186,10 +186,10 @@ template <int dim> void Engine<dim>::compute_own_forces() {
     ++renewals_;
   }
   // The increment of the first step is the displacement from the reference configuration.
-  const Increment<dim> increment =
-      step_ == 0 ? Increment<dim>{particles_.displacement, start_rotation_, 1.0, 0.0}
-                 : Increment<dim>{particles_.velocity, particles_.angular_velocity, time_step_,
-                                  time_step_};
+  Increment<dim> increment{particles_.velocity, particles_.angular_velocity, time_step_, time_step_,
+                           travelled_};
+  if (step_ == 0)
+    increment = {particles_.displacement, start_rotation_, 1.0, 0.0, travelled_};
   const std::vector<Break> breaks =
       compute_contact_forces(contacts_, particles_, increment, shear_increment_, loads_);
   for (const Break& lost : breaks)
@@ -249,6 +249,7 @@ template <int dim> void Engine<dim>::integrate() {
   clusters_.advance(loads_, damping_, gravity_, step_, time_step_, boundary_);
   const double farthest = dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0);
   clusters_.place(particles_);
+  travelled_ += farthest;
   skin_.wear(farthest);
   for (std::size_t k = 0; k < tools_.size(); ++k) {
     tools_[k].end_step();

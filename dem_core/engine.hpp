@@ -163,6 +163,7 @@ private:
   std::vector<Aligned<Rot<dim>>> start_rotation_; // made before the start, rad
   std::size_t bonds_at_start_ = 0;
   std::size_t renewals_ = 0;
+  double travelled_ = 0.0; // see Increment, m
 
   double time_step_ = 0.0;
   std::uint64_t step_ = 0;

@@ -53,6 +53,7 @@ template <int dim> void Engine<dim>::restore(const State& state) {
   reader(model, saved);
   visit_parts(*this, reader);
   reader.finish();
+  contacts_.clear_until.clear();
   forces_are_current_ = interface_forces_are_old_ = false;
 }
 

@@ -78,8 +78,8 @@ struct StateParts {
            normal_stiffness, tangential_stiffness, tensile_strength, shear_strength, friction,
            weight, law, normal_viscosity, tangential_viscosity, bending_stiffness,
            twisting_stiffness, bond_lever, rolling_limit, moment, block_offset, loose_offset,
-           target, waiting_offset, incoming_offset, incoming_row, incoming_second, losses] =
-        contacts;
+           target, waiting_offset, incoming_offset, incoming_row, incoming_second, losses,
+           clear_until] = contacts;
     visit("first", first);
     visit("second", second);
     visit("reference_branch", reference_branch);
@@ -265,7 +265,7 @@ struct StateParts {
     auto& [material, damping, shear_increment, initial, period, particles, boundary, clusters,
            reactions, applied_forces, contacts, skin, tool_names, tools, wall_contacts,
            mass_scaling, gravity, weight_work_at_start, start_rotation, bonds_at_start, renewals,
-           time_step, step, forces_are_current, loads, touched, is_touched,
+           travelled, time_step, step, forces_are_current, loads, touched, is_touched,
            interface_forces_are_old, cracks, work, work_ahead] = whole;
     visit("time_step", time_step);
     visit("step", step);

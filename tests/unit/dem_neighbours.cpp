@@ -133,5 +133,43 @@ TEST(Neighbours, that_come_to_touch_repel_each_other) {
   EXPECT_NEAR(engine.particles().velocity[1][0], 0.0, 1e-3);
 }
 
+// Pairs that are apart are not looked at in every step: each must be there when it touches, the
+// overlap by the positions against the force. Rows of discs meet with speeds of a factor of 50.
+TEST(Neighbours, that_are_apart_are_found_in_the_step_in_which_they_touch) {
+  dem::Settings<2> settings;
+  settings.material = rock(2);
+  settings.bonds = false;
+  for (int row = 0; row < 100; ++row)
+    for (const double x : {0.0, 1.0 + 0.0004 * row, 2.01 + 0.0007 * row}) {
+      settings.positions.push_back({x * spacing, 1.5 * row * spacing});
+      settings.radii.push_back(0.5 * spacing);
+    }
+  for (std::size_t i = 0; i < settings.positions.size(); ++i) {
+    dem::InitialCondition<2> condition;
+    condition.box = Box<2>{settings.positions[i], settings.positions[i]};
+    condition.velocity = {
+        i % 3 == 1 ? 0.0 : (i % 3 == 0 ? 1.0 : -1.0) / (1.0 + static_cast<double>(i % 50)), 0.0};
+    settings.initial.push_back(condition);
+  }
+  dem::Engine<2> engine(settings);
+  engine.start(0.1 * 2.0 / std::sqrt(2e10 / engine.particles().mass[0]));
+  std::size_t started = 0;
+  std::vector<bool> touched(300, false);
+  for (int n = 0; n < 1000; ++n) {
+    engine.compute_own_forces();
+    const auto& contacts = engine.contacts();
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const double opening = dem::span_of(contacts, engine.particles(), k).opening;
+      ASSERT_EQ(contacts.normal_force[k] != 0.0, opening < 0.0) << n << " " << k << " " << opening;
+      if (opening < 0.0 && !touched[contacts.first[k]]) {
+        touched[contacts.first[k]] = true;
+        ++started;
+      }
+    }
+    engine.integrate();
+  }
+  EXPECT_GT(started, 20u);
+}
+
 } // namespace
 } // namespace kerf
