@@ -101,8 +101,11 @@ KERF_INLINE bool any(const Mask& mask) {
 KERF_INLINE Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) {
 #if defined(__AVX512F__)
   return mask ? yes : no;
-#else // g++ 12 fails on some conditions of narrower vectors
-  return (Lanes)((mask & (Mask)yes) | (~mask & (Mask)no));
+#elif defined(__AVX__)
+  return (Lanes)_mm256_blendv_pd((__m256d)no, (__m256d)yes, (__m256d)mask);
+#else // in plain operators g++ 12 finds conditions that it then fails on
+  return (Lanes)_mm_or_pd(_mm_and_pd((__m128d)mask, (__m128d)yes),
+                          _mm_andnot_pd((__m128d)mask, (__m128d)no));
 #endif
 }
 KERF_INLINE Lanes square_root(const Lanes& x) {

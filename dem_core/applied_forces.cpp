@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -47,13 +48,22 @@ std::vector<double> AppliedForces<dim>::shares(std::size_t k,
   return share;
 }
 
-template <int dim>
-void AppliedForces<dim>::add(double t, const Particles<dim>& particles, Loads<dim>& loads) const {
+template <int dim> void AppliedForces<dim>::begin_step(double t, const Particles<dim>& particles) {
+  now_.resize(size());
   for (std::size_t k = 0; k < size(); ++k) {
     const Vec<dim> force = value(k, t);
-    const std::vector<double> share = shares(k, particles);
-    for (std::size_t entry = 0; entry < share.size(); ++entry)
-      loads.own[selected_[k][entry]].force += share[entry] * force;
+    now_[k].clear();
+    for (const double share : shares(k, particles))
+      now_[k].push_back(share * force);
+  }
+}
+
+template <int dim> void AppliedForces<dim>::add(ParticleBlock block, Loads<dim>& loads) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    const std::vector<std::uint32_t>& selected = selected_[k];
+    auto at = std::lower_bound(selected.begin(), selected.end(), block.begin);
+    for (; at != selected.end() && *at < block.end; ++at)
+      loads.own[*at].force += now_[k][static_cast<std::size_t>(at - selected.begin())];
   }
 }
 

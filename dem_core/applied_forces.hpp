@@ -21,8 +21,10 @@ public:
   /// Sum over the particles at time t, N.
   Vec<dim> total(std::size_t k, double t) const;
 
-  /// Adds the forces of time t to the own resultants; masses that share one are those of now.
-  void add(double t, const Particles<dim>& particles, Loads<dim>& loads) const;
+  /// The forces of time t; masses that share one are those of now.
+  void begin_step(double t, const Particles<dim>& particles);
+  /// Adds them to the own resultants of a block.
+  void add(ParticleBlock block, Loads<dim>& loads) const;
   /// Enters the work of the step from t, after integrate().
   void book(double t, const Particles<dim>& particles, const Loads<dim>& loads,
             const Boundary<dim>& boundary, double time_step, bool is_first_step);
@@ -39,6 +41,7 @@ private:
   std::vector<AppliedForce<dim>> settings_;
   std::vector<std::vector<std::uint32_t>> selected_;
   std::vector<RunningWork> work_;
+  std::vector<std::vector<Vec<dim>>> now_; // on each particle of every set in this step, N
 };
 
 } // namespace kerf::dem

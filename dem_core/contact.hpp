@@ -53,10 +53,6 @@ private:
   std::vector<double> each_;
 };
 
-/// Particles are worked on in blocks of a fixed size, never of the number of threads, so that sums
-/// have the same bits for any number of them.
-inline constexpr std::uint32_t particles_per_block = 1024;
-
 /// What contacts have dissipated so far, with weight, J.
 struct ContactLosses {
   double friction = 0.0, fracture = 0.0, viscous = 0.0;

@@ -2,6 +2,8 @@
 
 #include "common/instruction_set.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 
 // The kernels of contact_kernel.cpp.
@@ -23,8 +25,8 @@ template <int dim> ContactKernel<dim> kernel(ContactLaw law) {
                           avx512::kernel_of<dim>)(law);
 }
 
-void append(void* list, std::uint32_t contact, BreakMode mode, double energy) {
-  static_cast<std::vector<Break>*>(list)->push_back({contact, mode, energy});
+template <int dim> void append(void* list, std::uint32_t contact, BreakMode mode, double energy) {
+  static_cast<std::vector<Break<dim>>*>(list)->push_back({contact, mode, energy});
 }
 
 ContactConstant constant(const PerContact& values) {
@@ -69,70 +71,115 @@ ContactView<dim> view_of(Contacts<dim>& c, const Particles<dim>& p, const Increm
   view.half = rule == ShearIncrement::midpoint ? 0.5 : 0.0;
   view.loads = reinterpret_cast<double*>(loads.own.data());
   view.travelled = increment.travelled;
-  view.on_break = append;
+  view.on_break = append<dim>;
   return view;
 }
+
+/// One pass over the blocks.
+template <int dim> struct Pass {
+  Contacts<dim>& contacts;
+  const Particles<dim>& particles;
+  Loads<dim>& loads;
+  ContactView<dim> view; // of all blocks
+  ContactKernel<dim> compute_all;
+  std::vector<std::vector<Break<dim>>> breaks;
+
+  typename std::vector<Load<dim>>::iterator row(std::size_t r) const {
+    return loads.own.begin() + static_cast<std::ptrdiff_t>(r);
+  }
+
+  /// What the contacts of a block do to its particles and to those of later ones.
+  void compute(std::size_t b) {
+    const auto [begin, end] = particle_block(b, particles.size());
+    std::fill(row(begin), row(end), Load<dim>());
+    std::fill(row(contacts.waiting_offset[b]), row(contacts.waiting_offset[b + 1]), Load<dim>());
+    ContactView<dim> own = view;
+    own.begin = contacts.block_offset[b];
+    own.loose = contacts.loose_offset[b];
+    own.end = contacts.block_offset[b + 1];
+    own.clear_until = &contacts.clear_until[own.loose / chunk_size + b];
+    own.breaks = &breaks[b];
+    compute_all(own);
+    for (Break<dim>& lost : breaks[b]) {
+      const Span<dim> span = span_of(contacts, particles, lost.contact);
+      lost.place = particles.position(contacts.first[lost.contact]) +
+                   contacts.share[lost.contact] * span.branch;
+      lost.normal = span.normal();
+    }
+    contacts.losses[b].friction += own.friction_loss;
+    contacts.losses[b].fracture += own.fracture_loss;
+    contacts.losses[b].viscous += own.viscous_loss;
+  }
+
+  /// All that a block receives comes from blocks that are not before this one.
+  bool receives_from(std::size_t first, std::size_t b) const {
+    const std::uint32_t incoming = contacts.incoming_offset[b];
+    return incoming == contacts.incoming_offset[b + 1] ||
+           contacts.incoming_row[incoming] >= contacts.waiting_offset[first];
+  }
+  /// What earlier blocks have left for this one.
+  void receive(std::size_t b) {
+    for (std::uint32_t e = contacts.incoming_offset[b]; e < contacts.incoming_offset[b + 1]; ++e) {
+      const std::size_t ahead = std::min<std::size_t>(e + 16, contacts.waiting_rows() - 1);
+      __builtin_prefetch(&loads.own[contacts.incoming_row[ahead]]);
+      __builtin_prefetch(&loads.own[contacts.incoming_second[ahead]]);
+      Load<dim>& load = loads.own[contacts.incoming_second[e]];
+      const Load<dim>& waiting = loads.own[contacts.incoming_row[e]];
+      load.force += waiting.force;
+      load.moment += waiting.moment;
+    }
+  }
+};
 
 } // namespace
 
 template <int dim>
-std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particles<dim>& particles,
-                                          const Increment<dim>& increment, ShearIncrement rule,
-                                          Loads<dim>& loads) {
-  const std::size_t n = particles.size();
-  loads.own.resize(n + contacts.waiting_rows());
+std::vector<Break<dim>> compute_contact_forces(Contacts<dim>& contacts,
+                                               const Particles<dim>& particles,
+                                               const Increment<dim>& increment, ShearIncrement rule,
+                                               Loads<dim>& loads, const BlockWork& complete) {
+  loads.own.resize(particles.size() + contacts.waiting_rows());
   contacts.clear_until.resize(contacts.size() / chunk_size + contacts.blocks() + 1);
-  const auto all = view_of(contacts, particles, increment, rule, loads);
-  const ContactKernel<dim> compute = kernel<dim>(contacts.law);
-  const auto blocks = static_cast<std::int64_t>(contacts.blocks());
-  std::vector<std::vector<Break>> breaks(contacts.blocks());
-  const auto row = [&](std::size_t r) {
-    return loads.own.begin() + static_cast<std::ptrdiff_t>(r);
+  const std::size_t blocks = contacts.blocks();
+  Pass<dim> pass{contacts,
+                 particles,
+                 loads,
+                 view_of(contacts, particles, increment, rule, loads),
+                 kernel<dim>(contacts.law),
+                 std::vector<std::vector<Break<dim>>>(blocks)};
+  const auto finish = [&](std::size_t b) {
+    pass.receive(b);
+    if (complete)
+      complete(b);
   };
-
+  // A block receives from earlier ones only, and only these look at its particles: it is complete
+  // after its own contacts, but for what another thread still has to give.
 #pragma omp parallel if (blocks > 1)
   {
-#pragma omp for schedule(static)
-    for (std::int64_t b = 0; b < blocks; ++b) {
-      const std::size_t first = static_cast<std::size_t>(b) * particles_per_block;
-      std::fill(row(first), row(std::min(n, first + particles_per_block)), Load<dim>());
-      std::fill(row(contacts.waiting_offset[b]), row(contacts.waiting_offset[b + 1]), Load<dim>());
-      ContactView<dim> view = all;
-      view.begin = contacts.block_offset[b];
-      view.loose = contacts.loose_offset[b];
-      view.end = contacts.block_offset[b + 1];
-      view.clear_until =
-          &contacts.clear_until[view.loose / chunk_size + static_cast<std::size_t>(b)];
-      view.breaks = &breaks[b];
-      compute(view);
-      contacts.losses[b].friction += view.friction_loss;
-      contacts.losses[b].fracture += view.fracture_loss;
-      contacts.losses[b].viscous += view.viscous_loss;
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());
+    const std::size_t first = blocks * thread / threads, last = blocks * (thread + 1) / threads;
+    for (std::size_t b = first; b < last; ++b) {
+      pass.compute(b);
+      if (pass.receives_from(first, b))
+        finish(b);
     }
-#pragma omp for schedule(static)
-    for (std::int64_t b = 0; b < blocks; ++b)
-      for (std::uint32_t e = contacts.incoming_offset[b]; e < contacts.incoming_offset[b + 1];
-           ++e) {
-        const std::size_t ahead = std::min<std::size_t>(e + 16, contacts.waiting_rows() - 1);
-        __builtin_prefetch(&loads.own[contacts.incoming_row[ahead]]);
-        __builtin_prefetch(&loads.own[contacts.incoming_second[ahead]]);
-        Load<dim>& load = loads.own[contacts.incoming_second[e]];
-        const Load<dim>& waiting = loads.own[contacts.incoming_row[e]];
-        load.force += waiting.force;
-        load.moment += waiting.moment;
-      }
+#pragma omp barrier
+    for (std::size_t b = first; b < last; ++b)
+      if (!pass.receives_from(first, b))
+        finish(b);
   }
-  std::vector<Break> list;
-  for (const std::vector<Break>& part : breaks)
+  std::vector<Break<dim>> list;
+  for (const std::vector<Break<dim>>& part : pass.breaks)
     list.insert(list.end(), part.begin(), part.end());
   return list;
 }
 
-template std::vector<Break> compute_contact_forces<2>(Contacts<2>&, const Particles<2>&,
-                                                      const Increment<2>&, ShearIncrement,
-                                                      Loads<2>&);
-template std::vector<Break> compute_contact_forces<3>(Contacts<3>&, const Particles<3>&,
-                                                      const Increment<3>&, ShearIncrement,
-                                                      Loads<3>&);
+#define KERF_INSTANTIATE(dim)                                                                      \
+  template std::vector<Break<dim>> compute_contact_forces<dim>(                                    \
+      Contacts<dim>&, const Particles<dim>&, const Increment<dim>&, ShearIncrement, Loads<dim>&,   \
+      const BlockWork&);
+KERF_INSTANTIATE(2)
+KERF_INSTANTIATE(3)
 
 } // namespace kerf::dem

@@ -4,6 +4,7 @@
 #include "dem_core/contact.hpp"
 #include "dem_core/contact_view.hpp"
 
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -36,11 +37,17 @@ template <int dim> struct Loads {
 };
 
 /// A bond that was lost.
-struct Break {
+template <int dim> struct Break {
   std::uint32_t contact = 0;
   BreakMode mode = BreakMode::tension;
-  double energy = 0.0; // that it had stored, J
+  double energy = 0.0;                // that it had stored, J
+  Vec<dim> place = Vec<dim>::Zero();  // the point of contact, m
+  Vec<dim> normal = Vec<dim>::Zero(); // from the first to the second
 };
+
+/// Called for every block of particles when its forces are complete and nobody looks at its
+/// particles any more: they may move. Several calls may run at once.
+using BlockWork = std::function<void(std::size_t block)>;
 
 /// Brings every contact to the current positions and puts what it does to the particles in
 /// loads.own, each particle summed in the same order for any number of threads.
@@ -56,10 +63,12 @@ struct Break {
 /// while a contact carries, the tangential one while it does not slide, and a spring resists the
 /// relative rotation of the particles: see contact_constants.hpp, contact_laws.hpp.
 /// @pre no two centres of a pair coincide
+/// @param complete  what else there is to do for a block, while it is in the cache
 /// @return the bonds that broke, ascending
 template <int dim>
-std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particles<dim>& particles,
-                                          const Increment<dim>& increment, ShearIncrement rule,
-                                          Loads<dim>& loads);
+std::vector<Break<dim>> compute_contact_forces(Contacts<dim>& contacts,
+                                               const Particles<dim>& particles,
+                                               const Increment<dim>& increment, ShearIncrement rule,
+                                               Loads<dim>& loads, const BlockWork& complete = {});
 
 } // namespace kerf::dem

@@ -3,17 +3,16 @@
 namespace kerf::dem {
 
 template <int dim>
-Crack<dim> crack_of(const Break& lost, const Contacts<dim>& contacts,
-                    const Particles<dim>& particles, std::uint64_t step, double time) {
+Crack<dim> crack_of(const Break<dim>& lost, const Contacts<dim>& contacts, std::uint64_t step,
+                    double time) {
   const std::uint32_t k = lost.contact;
-  const Span<dim> span = span_of(contacts, particles, k);
   Crack<dim> crack;
   crack.step = step;
   crack.time = time;
   crack.first = contacts.first[k];
   crack.second = contacts.second[k];
-  crack.place = particles.position(crack.first) + contacts.share[k] * span.branch;
-  crack.normal = span.normal();
+  crack.place = lost.place;
+  crack.normal = lost.normal;
   crack.mode = lost.mode;
   crack.energy = lost.energy;
   crack.strength =
@@ -21,9 +20,7 @@ Crack<dim> crack_of(const Break& lost, const Contacts<dim>& contacts,
   return crack;
 }
 
-template Crack<2> crack_of<2>(const Break&, const Contacts<2>&, const Particles<2>&, std::uint64_t,
-                              double);
-template Crack<3> crack_of<3>(const Break&, const Contacts<3>&, const Particles<3>&, std::uint64_t,
-                              double);
+template Crack<2> crack_of<2>(const Break<2>&, const Contacts<2>&, std::uint64_t, double);
+template Crack<3> crack_of<3>(const Break<3>&, const Contacts<3>&, std::uint64_t, double);
 
 } // namespace kerf::dem

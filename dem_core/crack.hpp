@@ -19,9 +19,9 @@ template <int dim> struct Crack {
   double strength = 0.0;               // R_n or R_t that was exceeded, N
 };
 
-/// The crack that a break at the present positions has made.
+/// The crack that a break has made.
 template <int dim>
-Crack<dim> crack_of(const Break& lost, const Contacts<dim>& contacts,
-                    const Particles<dim>& particles, std::uint64_t step, double time);
+Crack<dim> crack_of(const Break<dim>& lost, const Contacts<dim>& contacts, std::uint64_t step,
+                    double time);
 
 } // namespace kerf::dem

@@ -3,13 +3,11 @@
 namespace kerf::dem {
 
 template <int dim>
-void add_damping(const Damping& damping, const Particles<dim>& particles, Loads<dim>& loads) {
-  if (damping.translation == 0.0 && damping.rotation == 0.0)
+void add_damping(const Damping& damping, const Particles<dim>& particles, ParticleBlock block,
+                 Loads<dim>& loads) {
+  if (!damping.is_on())
     return;
-  loads.damping.resize(particles.size());
-  const auto count = static_cast<std::int64_t>(particles.size());
-#pragma omp parallel for schedule(static) if (count > particles_per_block)
-  for (std::int64_t i = 0; i < count; ++i) {
+  for (std::size_t i = block.begin; i < block.end; ++i) {
     Load<dim>& own = loads.own[i];
     Load<dim>& part = loads.damping[i];
     if (particles.is_member(i)) // damped as one body
@@ -23,7 +21,7 @@ void add_damping(const Damping& damping, const Particles<dim>& particles, Loads<
   }
 }
 
-template void add_damping<2>(const Damping&, const Particles<2>&, Loads<2>&);
-template void add_damping<3>(const Damping&, const Particles<3>&, Loads<3>&);
+template void add_damping<2>(const Damping&, const Particles<2>&, ParticleBlock, Loads<2>&);
+template void add_damping<3>(const Damping&, const Particles<3>&, ParticleBlock, Loads<3>&);
 
 } // namespace kerf::dem

@@ -32,9 +32,11 @@ Vector damping_force(DampingKind kind, double alpha, const Vector& force,
   return damping;
 }
 
-/// Adds damping to the own resultant of every particle but members of clusters, and keeps it beside
+/// Adds damping to the own resultants of a block, but for members of clusters, and keeps it beside
 /// for the books. The velocity is that of half a step before, v^(n-1/2).
+/// @pre loads.damping has room for all particles, unless it is empty and nothing is damped
 template <int dim>
-void add_damping(const Damping& damping, const Particles<dim>& particles, Loads<dim>& loads);
+void add_damping(const Damping& damping, const Particles<dim>& particles, ParticleBlock block,
+                 Loads<dim>& loads);
 
 } // namespace kerf::dem

@@ -177,8 +177,13 @@ void Engine<dim>::motion(std::span<const std::uint32_t> points, std::span<double
 }
 
 template <int dim> void Engine<dim>::compute_own_forces() {
-  if (forces_are_current_)
-    return;
+  if (!forces_are_current_)
+    compute_forces(false);
+}
+
+/// Block by block. `moves`: every one makes its step as soon as it is complete.
+/// @return the farthest that a particle has moved, m
+template <int dim> double Engine<dim>::compute_forces(bool moves) {
   forget_interface_forces();
   if (skin_.is_worn(particles_.displacement)) {
     renew_contacts(contacts_, particles_, material_, skin_.width(), period_);
@@ -190,20 +195,54 @@ template <int dim> void Engine<dim>::compute_own_forces() {
                            travelled_};
   if (step_ == 0)
     increment = {particles_.displacement, start_rotation_, 1.0, 0.0, travelled_};
-  const std::vector<Break> breaks =
-      compute_contact_forces(contacts_, particles_, increment, shear_increment_, loads_);
-  for (const Break& lost : breaks)
-    cracks_.push_back(
-        crack_of(lost, contacts_, particles_, step_, static_cast<double>(step_) * time_step_));
+  const double tool_time = step_ == 0 ? 0.0 : time_step_;
   for (std::size_t k = 0; k < tools_.size(); ++k) {
     tools_[k].begin_step(step_, time_step_);
-    wall_contacts_[k].compute(tools_[k], particles_, increment, step_ == 0 ? 0.0 : time_step_,
-                              loads_);
+    wall_contacts_[k].begin_step(tools_[k], particles_, tool_time);
   }
-  add_weight(gravity_, particles_, loads_);
-  applied_forces_.add(static_cast<double>(step_) * time_step_, particles_, loads_);
-  add_damping(damping_, particles_, loads_);
+  applied_forces_.begin_step(static_cast<double>(step_) * time_step_, particles_);
+  if (damping_.is_on())
+    loads_.damping.resize(size());
+
+  std::vector<std::vector<ToolLoad<dim>>> on_tools(tools_.size());
+  for (std::vector<ToolLoad<dim>>& parts : on_tools)
+    parts.resize(contacts_.blocks());
+  std::vector<double> farthest(contacts_.blocks(), 0.0); // m
+  const auto complete = [&](std::size_t b) {
+    const ParticleBlock block = particle_block(b, size());
+    for (std::size_t k = 0; k < tools_.size(); ++k)
+      on_tools[k][b] =
+          wall_contacts_[k].compute(b, tools_[k], particles_, increment, tool_time, loads_);
+    add_weight(gravity_, particles_, block, loads_);
+    applied_forces_.add(block, loads_);
+    add_damping(damping_, particles_, block, loads_);
+    if (moves)
+      farthest[b] = dem::integrate(particles_, loads_, boundary_, block, time_step_, step_ == 0);
+  };
+  const std::vector<Break<dim>> breaks =
+      compute_contact_forces(contacts_, particles_, increment, shear_increment_, loads_, complete);
+  for (const Break<dim>& lost : breaks)
+    cracks_.push_back(crack_of(lost, contacts_, step_, static_cast<double>(step_) * time_step_));
+  for (std::size_t k = 0; k < tools_.size(); ++k)
+    for (const ToolLoad<dim>& part : on_tools[k])
+      tools_[k].add_load(part);
   forces_are_current_ = true;
+  return *std::max_element(farthest.begin(), farthest.end());
+}
+
+/// With the forces that there are.
+/// @return the farthest that a particle has moved, m
+template <int dim> double Engine<dim>::move() {
+  clusters_.advance(loads_, damping_, gravity_, step_, time_step_, boundary_);
+  double farthest = 0.0;
+  const auto blocks = static_cast<std::int64_t>(count_blocks(size()));
+#pragma omp parallel for schedule(static) reduction(max : farthest) if (blocks > 1)
+  for (std::int64_t b = 0; b < blocks; ++b)
+    farthest =
+        std::max(farthest, dem::integrate(particles_, loads_, boundary_, particle_block(b, size()),
+                                          time_step_, step_ == 0));
+  clusters_.place(particles_);
+  return farthest;
 }
 
 template <int dim>
@@ -245,10 +284,10 @@ template <int dim> void Engine<dim>::forget_interface_forces() {
 }
 
 template <int dim> void Engine<dim>::integrate() {
-  assert(time_step_ > 0.0 && forces_are_current_);
-  clusters_.advance(loads_, damping_, gravity_, step_, time_step_, boundary_);
-  const double farthest = dem::integrate(particles_, loads_, boundary_, time_step_, step_ == 0);
-  clusters_.place(particles_);
+  assert(time_step_ > 0.0);
+  if (clusters_.size() > 0) // their resultant needs all of their members
+    compute_own_forces();
+  const double farthest = forces_are_current_ ? move() : compute_forces(true);
   travelled_ += farthest;
   skin_.wear(farthest);
   for (std::size_t k = 0; k < tools_.size(); ++k) {

@@ -110,11 +110,14 @@ public:
   /// x^n in m and v^(n-1/2) in m/s (v^0 in the first step); prescribed components give v^(n+1/2).
   void motion(std::span<const std::uint32_t> points, std::span<double> position,
               std::span<double> velocity) const;
-  /// Contacts and damping at x^n. A second call in the same step changes nothing.
+  /// Contacts, tools, weight, loads and damping at x^n. A second call in the same step changes
+  /// nothing.
   void compute_own_forces();
   /// Everything but the interface force, N.
   void own_forces(std::span<const std::uint32_t> points, std::span<double> force) const;
   void add_interface_forces(std::span<const std::uint32_t> points, std::span<const double> force);
+  /// Computes the own forces, too, unless that is done: each block of particles then goes through
+  /// the whole step while it is in the cache. The bits are the same.
   void integrate();
 
   /// Of t_n, after integrate() of step n.
@@ -141,6 +144,8 @@ private:
   std::vector<double> cluster_sums() const;
   void book_step();
   void forget_interface_forces();
+  double compute_forces(bool moves);
+  double move();
 
   Material material_;
   Damping damping_;

@@ -5,12 +5,11 @@
 namespace kerf::dem {
 
 template <int dim>
-void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, Loads<dim>& loads) {
+void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, ParticleBlock block,
+                Loads<dim>& loads) {
   if (gravity.isZero(0.0))
     return;
-  const auto count = static_cast<std::int64_t>(particles.size());
-#pragma omp parallel for schedule(static) if (count > particles_per_block)
-  for (std::int64_t i = 0; i < count; ++i)
+  for (std::size_t i = block.begin; i < block.end; ++i)
     if (!particles.is_member(i))
       loads.own[i].force += particles.weighed_mass(i) * gravity;
 }
@@ -26,8 +25,8 @@ double weight_work(const Vec<dim>& gravity, const Particles<dim>& p, double time
   });
 }
 
-template void add_weight<2>(const Vec<2>&, const Particles<2>&, Loads<2>&);
-template void add_weight<3>(const Vec<3>&, const Particles<3>&, Loads<3>&);
+template void add_weight<2>(const Vec<2>&, const Particles<2>&, ParticleBlock, Loads<2>&);
+template void add_weight<3>(const Vec<3>&, const Particles<3>&, ParticleBlock, Loads<3>&);
 template double weight_work<2>(const Vec<2>&, const Particles<2>&, double);
 template double weight_work<3>(const Vec<3>&, const Particles<3>&, double);
 

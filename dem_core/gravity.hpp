@@ -6,10 +6,11 @@
 
 namespace kerf::dem {
 
-/// Adds m g to the own resultant of every particle, with blended masses.
+/// Adds m g to the own resultants of a block, with blended masses.
 /// @param gravity  m/s²
 template <int dim>
-void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, Loads<dim>& loads);
+void add_weight(const Vec<dim>& gravity, const Particles<dim>& particles, ParticleBlock block,
+                Loads<dim>& loads);
 
 /// Work of the weight since the particles left their reference positions, sum of m g . u, J.
 /// @param time_step  s; after integrate() of step n it gives the work until t_n, 0 until now

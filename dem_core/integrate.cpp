@@ -26,12 +26,10 @@ void prescribe(PrescribedMotion<dim>& prescribed, const Vec<dim>& velocity_befor
 
 template <int dim>
 double integrate(Particles<dim>& p, const Loads<dim>& loads, Boundary<dim>& boundary,
-                 double time_step, bool is_first_step) {
+                 ParticleBlock block, double time_step, bool is_first_step) {
   const double back = is_first_step ? 0.5 * time_step : 0.0; // from t_0 to t_(-1/2), s
-  const auto count = static_cast<std::int64_t>(p.size());
-  double fastest2 = 0.0; // m²/s²
-#pragma omp parallel for schedule(static) reduction(max : fastest2) if (count > particles_per_block)
-  for (std::int64_t i = 0; i < count; ++i) {
+  double fastest2 = 0.0;                                     // m²/s²
+  for (std::size_t i = block.begin; i < block.end; ++i) {
     const auto a = acceleration(p, loads, i);
     const Vec<dim> v_before = p.velocity[i];
     Vec<dim> v = (v_before - back * a.translation) + time_step * a.translation;            // eq. 4
@@ -46,7 +44,9 @@ double integrate(Particles<dim>& p, const Loads<dim>& loads, Boundary<dim>& boun
   return time_step * std::sqrt(fastest2);
 }
 
-template double integrate<2>(Particles<2>&, const Loads<2>&, Boundary<2>&, double, bool);
-template double integrate<3>(Particles<3>&, const Loads<3>&, Boundary<3>&, double, bool);
+template double integrate<2>(Particles<2>&, const Loads<2>&, Boundary<2>&, ParticleBlock, double,
+                             bool);
+template double integrate<3>(Particles<3>&, const Loads<3>&, Boundary<3>&, ParticleBlock, double,
+                             bool);
 
 } // namespace kerf::dem

@@ -1,4 +1,4 @@
-// One step of central differences for every particle.
+// One step of central differences.
 #pragma once
 
 #include "dem_core/boundary.hpp"
@@ -12,10 +12,10 @@ namespace kerf::dem {
 ///
 /// In the first step the velocities are v^0, and v^(-1/2) = v^0 - a dt / 2 comes first. Prescribed
 /// components follow the boundary instead; they move with their first velocity before the start.
-/// @return the farthest that a particle has moved, m
+/// @return the farthest that a particle of the block has moved, m
 template <int dim>
 double integrate(Particles<dim>& particles, const Loads<dim>& loads, Boundary<dim>& boundary,
-                 double time_step, bool is_first_step);
+                 ParticleBlock block, double time_step, bool is_first_step);
 
 /// What drives a particle, m/s² and rad/s².
 template <int dim> struct Acceleration {

@@ -60,6 +60,21 @@ template <int dim> struct Particles {
   bool is_member(std::size_t i) const noexcept { return !cluster.empty() && cluster[i] != 0; }
 };
 
+/// Particles are worked on in blocks of a fixed size, never of the number of threads, so that sums
+/// have the same bits for any number of them.
+inline constexpr std::uint32_t particles_per_block = 1024;
+
+inline std::size_t count_blocks(std::size_t particles) {
+  return (particles + particles_per_block - 1) / particles_per_block;
+}
+struct ParticleBlock {
+  std::size_t begin, end;
+};
+inline ParticleBlock particle_block(std::size_t block, std::size_t particles) {
+  const std::size_t begin = block * particles_per_block;
+  return {begin, std::min(particles, begin + particles_per_block)};
+}
+
 /// Area of a disc, m², or volume of a sphere, m³.
 template <int dim> double volume_of_radius(double radius) {
   if constexpr (dim == 2)

@@ -64,6 +64,8 @@ struct Damping {
   DampingKind kind = DampingKind::nonviscous;
   double translation = 0.0; // alpha_t, share of the resultant force
   double rotation = 0.0;    // alpha_r, share of the resultant moment
+
+  bool is_on() const noexcept { return translation != 0.0 || rotation != 0.0; }
 };
 
 enum class Motion {

@@ -212,7 +212,7 @@ struct StateParts {
     visit("of_former_sets", of_former_sets);
   }
   template <int dim, class Visit> static void of(AppliedForces<dim>& forces, Visit& visit) {
-    auto& [settings, selected, work] = forces;
+    auto& [settings, selected, work, now] = forces;
     visit("sets", work);
   }
 

@@ -47,14 +47,6 @@ Rot<dim> rotated(const Eigen::Matrix<double, dim, dim>& rotation, const Rot<dim>
 
 } // namespace
 
-/// What all particles have in common in one step.
-template <int dim> struct WallContacts<dim>::Step {
-  const Tool<dim>& tool;
-  const Particles<dim>& particles;
-  const Increment<dim>& increment;
-  double time; // s
-};
-
 /// How a particle has come to where it is, seen from the tool.
 template <int dim> struct WallContacts<dim>::Approach {
   std::uint32_t particle;
@@ -81,7 +73,7 @@ WallContacts<dim>::WallContacts(const WallMaterial& material, const Tool<dim>& t
                                 const Period<dim>& period)
     : material_(material), period_(period), middle_(tool.pose().start),
       extent_(std::numeric_limits<double>::infinity()), skin_(skin),
-      blocks_((particles.size() + particles_per_block - 1) / particles_per_block) {
+      blocks_(count_blocks(particles.size())) {
   check(material);
   if (const Surface<dim>* surface = tool.shape().surface()) {
     const Box<dim> box = bounding_box(*surface);
@@ -151,8 +143,7 @@ void WallContacts<dim>::renew(const Tool<dim>& tool, const Particles<dim>& parti
     block.offset.assign(1, 0);
     std::vector<std::uint32_t> found;
     auto touching = block.now.contacts.begin();
-    const auto first = static_cast<std::size_t>(b) * particles_per_block;
-    const std::size_t last = std::min(particles.size(), first + particles_per_block);
+    const auto [first, last] = particle_block(static_cast<std::size_t>(b), particles.size());
     for (std::size_t i = first; i < last; ++i) {
       const Vec<dim> centre = tool.pose().to_body(image(tool, particles.position(i)));
       found.clear();
@@ -176,25 +167,13 @@ void WallContacts<dim>::renew(const Tool<dim>& tool, const Particles<dim>& parti
 }
 
 template <int dim>
-void WallContacts<dim>::compute(Tool<dim>& tool, const Particles<dim>& particles,
-                                const Increment<dim>& increment, double time, Loads<dim>& loads) {
+void WallContacts<dim>::begin_step(const Tool<dim>& tool, const Particles<dim>& particles,
+                                   double time) {
   worn_ += time * (tool.velocity().translation.norm() + tool.velocity().rotation.norm() * reach_);
   if (worn_ >= skin_)
     renew(tool, particles);
-
-  const Step step{tool, particles, increment, time};
-  const auto blocks = static_cast<std::int64_t>(blocks_.size());
-  std::vector<ToolLoad<dim>> partial(blocks_.size());
-#pragma omp parallel for schedule(static) if (blocks > 1)
-  for (std::int64_t b = 0; b < blocks; ++b)
-    partial[b] = compute_block(blocks_[b], step, loads);
-  ToolLoad<dim> sum;
-  for (const ToolLoad<dim>& part : partial)
-    sum += part;
-  tool.add_load(sum);
 }
 
-/// @return what the particles of the block do to the tool, in space
 template <int dim>
 ToolLoad<dim> WallContacts<dim>::compute_block(Block& block, const Step& step,
                                                Loads<dim>& loads) const {

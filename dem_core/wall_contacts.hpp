@@ -37,12 +37,17 @@ public:
   /// Takes notice of a step in which no particle moved farther than this, m.
   void wear(double farthest) noexcept { worn_ += farthest; }
 
-  /// Brings the contacts to the current positions, adds what they do to the particles to loads.own
-  /// and what they do to the tool to its load; the sums are the same for any number of threads.
+  /// Lists the particles near the tool again when it is time.
+  /// @param time  that the tool has moved since the last call, s; 0 in the first step
+  void begin_step(const Tool<dim>& tool, const Particles<dim>& particles, double time);
+  /// Brings the contacts of a block to the current positions and adds what they do to the particles
+  /// to loads.own.
   /// @param increment  of the particles
-  /// @param time       that the tool has moved since the last call, s; 0 in the first step
-  void compute(Tool<dim>& tool, const Particles<dim>& particles, const Increment<dim>& increment,
-               double time, Loads<dim>& loads);
+  /// @return what the particles of the block do to the tool, in space
+  ToolLoad<dim> compute(std::size_t block, const Tool<dim>& tool, const Particles<dim>& particles,
+                        const Increment<dim>& increment, double time, Loads<dim>& loads) {
+    return compute_block(blocks_[block], {tool, particles, increment, time}, loads);
+  }
 
   const WallMaterial& material() const noexcept { return material_; }
   std::size_t size() const noexcept;
@@ -79,7 +84,13 @@ private:
     std::vector<FacetContact<dim>> found;     // scratch
     std::vector<std::uint32_t> from;          // scratch
   };
-  struct Step;
+  /// What all particles have in common in one step.
+  struct Step {
+    const Tool<dim>& tool;
+    const Particles<dim>& particles;
+    const Increment<dim>& increment;
+    double time; // s
+  };
   struct Approach;
 
   void renew(const Tool<dim>& tool, const Particles<dim>& particles);

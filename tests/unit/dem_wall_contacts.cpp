@@ -99,7 +99,8 @@ template <int dim> void shear_turns_with_the_tool() {
   std::vector<dem::Aligned<Rot<dim>>> turned(1);
   particles.displacement[0] = slip;
   tool.begin_step(0, dt);
-  contacts.compute(tool, particles, {moved, turned, 1.0}, 0.0, loads);
+  contacts.begin_step(tool, particles, 0.0);
+  contacts.compute(0, tool, particles, {moved, turned, 1.0}, 0.0, loads);
   tool.end_step();
   const Vec<dim> start = loads.own[0].force;
   const Vec<dim> body = particles.position(0);
@@ -112,7 +113,8 @@ template <int dim> void shear_turns_with_the_tool() {
     moved[0] = particles.displacement[0] - before;
     turned[0] = dt * tool.velocity().rotation;
     loads.own[0] = {};
-    contacts.compute(tool, particles, {moved, turned, 1.0}, dt, loads);
+    contacts.begin_step(tool, particles, dt);
+    contacts.compute(0, tool, particles, {moved, turned, 1.0}, dt, loads);
     tool.end_step();
   }
   const double error = (loads.own[0].force - tool.pose().rotation * start).norm() / start.norm();
