@@ -42,7 +42,7 @@ std::vector<Pair> pairs_within(const Particles<dim>& particles, double reach,
                                const Period<dim>& period) {
   std::vector<Vec<dim>> position(particles.size());
   const auto count = static_cast<std::int64_t>(particles.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > particles_per_block)
   for (std::int64_t i = 0; i < count; ++i)
     position[i] = particles.position(i);
   std::vector<Pair> pairs = find_pairs<dim>(position, particles.radius, reach, period);

@@ -13,6 +13,7 @@ namespace kerf::dem {
 
 namespace {
 
+/// What find_pairs() is asked for.
 template <int dim> struct Query {
   std::span<const Vec<dim>> position; // m
   std::span<const double> radius;     // m
@@ -94,6 +95,8 @@ private:
     std::uint32_t begin = other.begin;
     for (std::uint32_t i = row.begin; i < row.end; ++i) {
       const Vec<dim> from = from_.position(i) - shift;
+      if (x[other.end - 1] - from[0] < -farthest_)
+        return;
       while (begin + stride <= other.end && x[begin + stride - 1] - from[0] < -farthest_)
         begin += stride;
       std::uint32_t k = is_itself ? i + 1 : begin;
@@ -109,6 +112,7 @@ private:
       distance2 += (Lanes::Map(&to_.x[a][k]) - from[a]).square();
     const Lanes limit = Lanes::Map(&to_.radius[k]) + (from_.radius[i] + query_.reach);
     const Lanes excess = distance2 - limit * limit.abs(); // m²
+#pragma GCC unroll 8
     for (std::uint32_t l = 0; l < lanes; ++l)
       if (excess[l] <= doubt_ && k + l < end &&
           (excess[l] < -doubt_ || counts(i, k + l, to_.position(k + l) - from))) {
@@ -117,7 +121,7 @@ private:
       }
   }
 
-  /// Decides without roundings. Of two images at half a period the one of Period counts.
+  /// Decides from the distance itself. Of two images half a period away Period chooses one.
   bool counts(std::uint32_t i, std::uint32_t k, const Vec<dim>& branch) const {
     const std::uint32_t one = from_.particle[i], two = to_.particle[k];
     const Vec<dim> shortest = query_.period.shortest(query_.position[two] - query_.position[one]);
@@ -161,7 +165,7 @@ std::vector<Pair> sorted(std::span<const std::vector<Pair>> lists, std::size_t p
     for (const Pair& pair : list)
       pairs[next[pair.first]++] = pair;
   const auto rows = static_cast<std::int64_t>(particles);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (particles > particles_worth_threads)
   for (std::int64_t i = 0; i < rows; ++i)
     std::sort(pairs.begin() + offset[i], pairs.begin() + offset[i + 1],
               [](const Pair& a, const Pair& b) { return a.second < b.second; });
@@ -179,7 +183,7 @@ std::vector<Pair> find_pairs(std::span<const Vec<dim>> position, std::span<const
   const Query<dim> query{position, radius, reach, period};
   const std::vector<Level<dim>> levels = levels_of(query);
   std::vector<std::vector<Pair>> found; // of each thread, in any order
-#pragma omp parallel
+#pragma omp parallel if (position.size() > particles_worth_threads)
   {
     std::vector<Pair> own;
     for (std::size_t from = 0; from < levels.size(); ++from) {

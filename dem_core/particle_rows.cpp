@@ -8,8 +8,6 @@ namespace kerf::dem {
 
 namespace {
 
-constexpr std::int64_t particles_worth_threads = 2048;
-
 /// In [0, length], exact but for one rounding.
 double into_period(double x, double length) {
   if (!(length > 0.0) || (x >= 0.0 && x < length))
@@ -39,7 +37,7 @@ ParticleRows<dim>::ParticleRows(std::span<const std::uint32_t> particles,
     }
   const auto count = static_cast<std::int64_t>(particles.size());
   std::vector<Cell> cells(particles.size());
-#pragma omp parallel for schedule(static) if (count > particles_worth_threads)
+#pragma omp parallel for schedule(static) if (particles.size() > particles_worth_threads)
   for (std::int64_t k = 0; k < count; ++k)
     cells[k] = cell_of(into_period(position[particles[k]], period));
 
@@ -52,7 +50,7 @@ ParticleRows<dim>::ParticleRows(std::span<const std::uint32_t> particles,
     particle[rows_[row_of[k]].end++] = particles[k];
 
   const auto rows = static_cast<std::int64_t>(rows_.size());
-#pragma omp parallel for schedule(static) if (count > particles_worth_threads)
+#pragma omp parallel for schedule(static) if (particles.size() > particles_worth_threads)
   for (std::int64_t r = 0; r < rows; ++r)
     arrange(rows_[r], position, all_radii);
 }

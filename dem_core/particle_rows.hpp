@@ -4,11 +4,15 @@
 #include "common/vec.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace kerf::dem {
+
+/// With fewer, waking up the other threads takes longer than the search.
+inline constexpr std::size_t particles_worth_threads = 1024;
 
 /// Particles of similar size, copied row by row into arrays of their own. A row has those in one
 /// cell of y and z, ascending by x. Rows are found by a hash, so that a particle that flies away
@@ -20,11 +24,12 @@ public:
     Cell cell;
     std::uint32_t begin, end; // its particles
   };
-  /// Particles that a loop may read behind the last one of all.
+  /// How many particles behind the last one of all a loop may read.
   static constexpr std::uint32_t padding = 8;
 
-  /// @param width     of a cell, at least, m
-  /// @param farthest  what is farther from the origin shares the outermost cells, m
+  /// @param particles  which of all
+  /// @param width      least edge of a cell, m
+  /// @param farthest   what is farther from the origin shares the outermost cells, m
   ParticleRows(std::span<const std::uint32_t> particles, std::span<const Vec<dim>> position,
                std::span<const double> radius, double width, double farthest,
                const Period<dim>& period);
