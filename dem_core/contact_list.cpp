@@ -41,7 +41,9 @@ template <int dim>
 std::vector<Pair> pairs_within(const Particles<dim>& particles, double reach,
                                const Period<dim>& period) {
   std::vector<Vec<dim>> position(particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i)
+  const auto count = static_cast<std::int64_t>(particles.size());
+#pragma omp parallel for schedule(static) if (count > particles_per_block)
+  for (std::int64_t i = 0; i < count; ++i)
     position[i] = particles.position(i);
   std::vector<Pair> pairs = find_pairs<dim>(position, particles.radius, reach, period);
   if (!particles.cluster.empty()) // members of one body do not touch
@@ -169,17 +171,17 @@ void fill(Contacts<dim>& c, std::span<const BlockList> lists, std::size_t partic
 }
 
 /// The contacts of a block in ascending order of their pairs.
-template <int dim> std::vector<std::uint32_t> ascending(const Contacts<dim>& c, std::size_t block) {
-  const auto less = [&](std::uint32_t a, std::uint32_t b) {
-    return Pair{c.first[a], c.second[a]} < Pair{c.first[b], c.second[b]};
-  };
-  std::vector<std::uint32_t> order(c.block_offset[block + 1] - c.block_offset[block]);
-  std::iota(order.begin(), order.end(), c.block_offset[block]);
+template <int dim> std::vector<Entry> ascending(const Contacts<dim>& c, std::size_t block) {
+  const std::uint32_t begin = c.block_offset[block], end = c.block_offset[block + 1];
+  std::vector<Entry> entries(end - begin);
+  for (std::uint32_t k = begin; k < end; ++k)
+    entries[k - begin] = {{c.first[k], c.second[k]}, k};
   // Three ascending parts: what was bonded, what touched and what was apart.
-  const auto loose = order.begin() + (c.loose_offset[block] - c.block_offset[block]);
-  std::inplace_merge(loose, std::is_sorted_until(loose, order.end(), less), order.end(), less);
-  std::inplace_merge(order.begin(), loose, order.end(), less);
-  return order;
+  const auto less = [](const Entry& a, const Entry& b) { return a.pair < b.pair; };
+  const auto loose = entries.begin() + (c.loose_offset[block] - begin);
+  std::inplace_merge(loose, std::is_sorted_until(loose, entries.end(), less), entries.end(), less);
+  std::inplace_merge(entries.begin(), loose, entries.end(), less);
+  return entries;
 }
 
 } // namespace
@@ -239,17 +241,17 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
       particles.size(), pairs,
       [&](std::size_t block, BlockList& list, std::span<const Pair> of_block) {
         auto pair = of_block.begin();
-        for (const std::uint32_t k : ascending(contacts, block)) {
-          const Pair old{contacts.first[k], contacts.second[k]};
-          for (; pair != of_block.end() && *pair < old; ++pair)
+        for (const Entry& entry : ascending(contacts, block)) {
+          for (; pair != of_block.end() && *pair < entry.pair; ++pair)
             list.apart.push_back({*pair});
-          const bool is_near = pair != of_block.end() && *pair == old;
+          const bool is_near = pair != of_block.end() && *pair == entry.pair;
           if (is_near)
             ++pair;
+          const std::uint32_t k = entry.old;
           if (contacts.was_bonded(k) || contacts.bonded[k])
-            list.bonds.push_back({old, k});
+            list.bonds.push_back(entry);
           else if (is_near)
-            (contacts.normal_force[k] != 0.0 ? list.touching : list.apart).push_back({old, k});
+            (contacts.normal_force[k] != 0.0 ? list.touching : list.apart).push_back(entry);
         }
         for (; pair != of_block.end(); ++pair)
           list.apart.push_back({*pair});

@@ -1,171 +1,145 @@
 #include "dem_core/neighbours.hpp"
 
+#include "dem_core/particle_rows.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace kerf::dem {
 
 namespace {
 
-constexpr std::size_t particles_per_task = 1024;
-
-/// Particles of similar size in a grid of cells, each at least as wide as the farthest distance at
-/// which two of them count. Cells are found by a hash, so that a particle that flies away costs no
-/// memory.
-template <int dim> class Level {
-public:
-  using Index = std::array<std::int64_t, dim>;
-  struct Resident {
-    Index cell;
-    std::uint32_t particle;
-  };
-
-  Level(double smallest_width, const Period<dim>& period) : period_(period) {
-    for (int a = 0; a < dim; ++a) {
-      const double length = period.length[a];
-      count_[a] = length > 0.0
-                      ? std::clamp<std::int64_t>(
-                            static_cast<std::int64_t>(std::min(length / smallest_width, 1e6)), 1,
-                            std::int64_t{1} << 20)
-                      : 0;
-      width_[a] = length > 0.0 ? length / static_cast<double>(count_[a]) : smallest_width;
-    }
-  }
-
-  double width() const noexcept { return width_.minCoeff(); }
-
-  /// Takes in the particles, which keep their order inside a cell.
-  void fill(std::span<const std::uint32_t> particles, std::span<const Vec<dim>> position) {
-    std::size_t buckets = 16;
-    while (buckets < particles.size())
-      buckets *= 2;
-    mask_ = buckets - 1;
-    offset_.assign(buckets + 1, 0);
-    std::vector<Resident> unsorted(particles.size());
-    for (std::size_t k = 0; k < particles.size(); ++k) {
-      unsorted[k] = {cell_of(position[particles[k]]), particles[k]};
-      ++offset_[bucket(unsorted[k].cell) + 1];
-    }
-    for (std::size_t b = 0; b < buckets; ++b)
-      offset_[b + 1] += offset_[b];
-    residents_.resize(particles.size());
-    std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
-    for (const Resident& resident : unsorted)
-      residents_[next[bucket(resident.cell)]++] = resident;
-  }
-
-  /// Calls visit(j) for every particle whose cell touches the box of half the given edge around x;
-  /// nobody twice.
-  template <class Visit> void visit(const Vec<dim>& x, double reach, Visit visit) const {
-    Index low, high;
-    for (int a = 0; a < dim; ++a) {
-      low[a] = cell_along(x[a] - reach, a);
-      high[a] = cell_along(x[a] + reach, a);
-      if (count_[a] > 0)
-        high[a] = std::min(high[a], low[a] + count_[a] - 1);
-    }
-    Index cell = low;
-    for (;;) {
-      visit_cell(wrapped(cell), visit);
-      int a = 0;
-      while (a < dim && ++cell[a] > high[a]) {
-        cell[a] = low[a];
-        ++a;
-      }
-      if (a == dim)
-        return;
-    }
-  }
-
-private:
-  std::int64_t cell_along(double x, int a) const {
-    // What is farther away than this shares the outermost cell.
-    return static_cast<std::int64_t>(std::clamp(std::floor(x / width_[a]), -1e15, 1e15));
-  }
-  Index wrapped(Index cell) const {
-    for (int a = 0; a < dim; ++a)
-      if (count_[a] > 0) {
-        cell[a] %= count_[a];
-        if (cell[a] < 0)
-          cell[a] += count_[a];
-      }
-    return cell;
-  }
-  Index cell_of(const Vec<dim>& x) const {
-    Index cell;
-    for (int a = 0; a < dim; ++a)
-      cell[a] = cell_along(x[a], a);
-    return wrapped(cell);
-  }
-  std::size_t bucket(const Index& cell) const {
-    std::uint64_t hash = 0;
-    for (const std::int64_t i : cell)
-      hash = (hash ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15u;
-    return (hash >> 20) & mask_;
-  }
-  template <class Visit> void visit_cell(const Index& cell, Visit visit) const {
-    const std::size_t b = bucket(cell);
-    for (std::uint32_t e = offset_[b]; e < offset_[b + 1]; ++e)
-      if (residents_[e].cell == cell)
-        visit(residents_[e].particle);
-  }
-
-  Period<dim> period_;
-  Vec<dim> width_;
-  Index count_{}; // cells of a period; 0: does not repeat
-  std::size_t mask_ = 0;
-  std::vector<std::uint32_t> offset_;
-  std::vector<Resident> residents_;
+/// What find_pairs() is asked for.
+template <int dim> struct Query {
+  std::span<const Vec<dim>> position; // m
+  std::span<const double> radius;     // m
+  double reach;                       // m
+  const Period<dim>& period;
 };
 
-/// Levels of doubling size, so that small particles do not crowd the cells of large ones.
-template <int dim> class Levels {
+/// Particles of which the largest is less than twice the smallest, so that small ones do not crowd
+/// the cells of large ones.
+template <int dim> struct Level {
+  double largest; // radius, m
+  ParticleRows<dim> rows;
+};
+
+/// From small to large.
+template <int dim> std::vector<Level<dim>> levels_of(const Query<dim>& query) {
+  const double smallest = *std::min_element(query.radius.begin(), query.radius.end());
+  std::vector<std::vector<std::uint32_t>> members;
+  for (std::uint32_t i = 0; i < query.radius.size(); ++i) {
+    if (!query.position[i].allFinite())
+      continue;
+    const auto number =
+        static_cast<std::size_t>(std::max(0, std::ilogb(query.radius[i] / smallest)));
+    if (number >= members.size())
+      members.resize(number + 1);
+    members[number].push_back(i);
+  }
+  std::vector<Level<dim>> levels;
+  for (const std::vector<std::uint32_t>& own : members) {
+    double largest = 0.0;
+    for (const std::uint32_t i : own)
+      largest = std::max(largest, query.radius[i]);
+    const double width = std::max(2.0 * largest + query.reach, largest);
+    if (!own.empty())
+      levels.push_back({largest, ParticleRows<dim>(own, query.position, query.radius, width,
+                                                   1e15 * smallest, query.period)});
+  }
+  return levels;
+}
+
+/// Finds the pairs between two levels, or within one.
+template <int dim> class Search {
 public:
-  Levels(std::span<const Vec<dim>> position, std::span<const double> radius, double reach,
-         const Period<dim>& period) {
-    const auto [least, most] = std::minmax_element(radius.begin(), radius.end());
-    smallest_ = *least;
-    std::vector<std::vector<std::uint32_t>> members(level_of(*most) + 1);
-    for (std::uint32_t i = 0; i < position.size(); ++i)
-      if (position[i].allFinite())
-        members[level_of(radius[i])].push_back(i);
-    for (std::size_t l = 0; l < members.size(); ++l) {
-      if (members[l].empty())
-        continue;
-      double largest = 0.0;
-      for (const std::uint32_t i : members[l])
-        largest = std::max(largest, radius[i]);
-      levels_.push_back({l, largest, Level<dim>(2.0 * largest + reach, period)});
-      levels_.back().cells.fill(members[l], position);
-    }
+  using Rows = ParticleRows<dim>;
+  using Row = typename Rows::Row;
+
+  Search(const Query<dim>& query, const Level<dim>& from, const Level<dim>& to,
+         std::vector<Pair>& found)
+      : query_(query), from_(from.rows), to_(to.rows), found_(found) {
+    // Coordinates of images are off by a few roundings of the period.
+    const double rounding = 1e-15 * query.period.length.maxCoeff();
+    const double longest = std::max(0.0, from.largest + to.largest + query.reach);
+    farthest_ = longest * (1.0 + 1e-9) + rounding;
+    doubt_ = farthest_ * (1e-9 * farthest_ + 4.0 * rounding);
   }
 
-  /// Calls visit(j) for everybody of the size of particle i or larger who may be near it.
-  template <class Visit>
-  void visit(const Vec<dim>& x, double radius, double reach, Visit visit) const {
-    const std::size_t own = level_of(radius);
-    for (const Entry& level : levels_)
-      if (level.number >= own)
-        level.cells.visit(x, radius + level.largest + reach,
-                          [&](std::uint32_t j) { visit(j, level.number > own); });
+  /// Finds those of one row. Two images of rows of one level meet once, from the side where the
+  /// other is the later one.
+  void find(const Row& row) {
+    const bool is_one_level = &from_ == &to_;
+    const int images = query_.period.length[0] > 0.0 ? 1 : 0; // along x, on either side
+    to_.visit_near(from_.bounds(row), farthest_,
+                   [&](const Row& other, const auto& cell, auto shift) {
+                     for (int image = -images; image <= images; ++image) {
+                       const auto order = cell != row.cell ? cell <=> row.cell : image <=> 0;
+                       if (is_one_level && order < 0)
+                         continue;
+                       shift[0] = image * query_.period.length[0];
+                       sweep(row, other, shift, is_one_level && order == 0);
+                     }
+                   });
   }
 
 private:
-  std::size_t level_of(double radius) const {
-    return static_cast<std::size_t>(std::max(0, std::ilogb(radius / smallest_)));
+  /// Goes along both rows at once: whoever is near along x lies in a window that moves on.
+  void sweep(const Row& row, const Row& other, const Vec<dim>& shift, bool is_itself) {
+    constexpr std::uint32_t stride = 4; // so long that the window seldom moves
+    const double* x = to_.x[0].data();
+    std::uint32_t begin = other.begin;
+    for (std::uint32_t i = row.begin; i < row.end; ++i) {
+      const Vec<dim> from = from_.position(i) - shift;
+      if (x[other.end - 1] - from[0] < -farthest_)
+        return;
+      while (begin + stride <= other.end && x[begin + stride - 1] - from[0] < -farthest_)
+        begin += stride;
+      std::uint32_t k = is_itself ? i + 1 : begin;
+      for (; k < other.end && x[k] - from[0] <= farthest_; k += lanes)
+        compare(i, from, k, other.end);
+    }
   }
-  struct Entry {
-    std::size_t number;
-    double largest; // radius, m
-    Level<dim> cells;
-  };
-  double smallest_ = 0.0; // radius, m
-  std::vector<Entry> levels_;
+
+  /// Takes those of the next few particles from k that are near particle i with an image at `from`.
+  void compare(std::uint32_t i, const Vec<dim>& from, std::uint32_t k, std::uint32_t end) {
+    Lanes distance2 = (Lanes::Map(&to_.x[0][k]) - from[0]).square();
+    for (int a = 1; a < dim; ++a)
+      distance2 += (Lanes::Map(&to_.x[a][k]) - from[a]).square();
+    const Lanes limit = Lanes::Map(&to_.radius[k]) + (from_.radius[i] + query_.reach);
+    const Lanes excess = distance2 - limit * limit.abs(); // m²
+#pragma GCC unroll 8
+    for (std::uint32_t l = 0; l < lanes; ++l)
+      if (excess[l] <= doubt_ && k + l < end &&
+          (excess[l] < -doubt_ || counts(i, k + l, to_.position(k + l) - from))) {
+        const auto [first, second] = std::minmax(from_.particle[i], to_.particle[k + l]);
+        found_.push_back({first, second});
+      }
+  }
+
+  /// Decides from the distance itself. Of two images half a period away Period chooses one.
+  bool counts(std::uint32_t i, std::uint32_t k, const Vec<dim>& branch) const {
+    const std::uint32_t one = from_.particle[i], two = to_.particle[k];
+    const Vec<dim> shortest = query_.period.shortest(query_.position[two] - query_.position[one]);
+    for (int a = 0; a < dim; ++a)
+      if (query_.period.length[a] > 0.0 &&
+          std::abs(branch[a] - shortest[a]) > 0.5 * query_.period.length[a])
+        return false;
+    return shortest.norm() - (query_.radius[one] + query_.radius[two]) <= query_.reach;
+  }
+
+  static constexpr std::uint32_t lanes = Rows::padding;
+  using Lanes = Eigen::Array<double, lanes, 1>;
+
+  const Query<dim>& query_;
+  const Rows &from_, &to_;
+  std::vector<Pair>& found_;
+  double farthest_; // distance at which two may count, m
+  double doubt_;    // of squared distances, m²
 };
 
 template <int dim> void check_period(const Period<dim>& period, double distance) {
@@ -178,25 +152,23 @@ template <int dim> void check_period(const Period<dim>& period, double distance)
 }
 
 /// All pairs in ascending order: counted into rows by their first, then each row is sorted.
-std::vector<Pair> sorted(const std::vector<std::vector<Pair>>& parts, std::size_t particles) {
+std::vector<Pair> sorted(std::span<const std::vector<Pair>> lists, std::size_t particles) {
   std::vector<std::uint32_t> offset(particles + 1, 0);
-  std::size_t count = 0;
-  for (const std::vector<Pair>& part : parts) {
-    count += part.size();
-    for (const Pair& pair : part)
+  for (const std::vector<Pair>& list : lists)
+    for (const Pair& pair : list)
       ++offset[pair.first + 1];
-  }
   for (std::size_t i = 0; i < particles; ++i)
     offset[i + 1] += offset[i];
-  std::vector<Pair> pairs(count);
+  std::vector<Pair> pairs(offset.back());
   std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
-  for (const std::vector<Pair>& part : parts)
-    for (const Pair& pair : part)
+  for (const std::vector<Pair>& list : lists)
+    for (const Pair& pair : list)
       pairs[next[pair.first]++] = pair;
   const auto rows = static_cast<std::int64_t>(particles);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (particles > particles_worth_threads)
   for (std::int64_t i = 0; i < rows; ++i)
-    std::sort(pairs.begin() + offset[i], pairs.begin() + offset[i + 1]);
+    std::sort(pairs.begin() + offset[i], pairs.begin() + offset[i + 1],
+              [](const Pair& a, const Pair& b) { return a.second < b.second; });
   return pairs;
 }
 
@@ -208,28 +180,21 @@ std::vector<Pair> find_pairs(std::span<const Vec<dim>> position, std::span<const
   if (radius.empty())
     return {};
   check_period(period, 2.0 * *std::max_element(radius.begin(), radius.end()) + reach);
-  const Levels<dim> levels(position, radius, reach, period);
-  const auto tasks =
-      static_cast<std::int64_t>((position.size() + particles_per_task - 1) / particles_per_task);
-  std::vector<std::vector<Pair>> found(tasks);
-#pragma omp parallel for schedule(dynamic) if (tasks > 1)
-  for (std::int64_t t = 0; t < tasks; ++t) {
-    const std::size_t begin = static_cast<std::size_t>(t) * particles_per_task;
-    const std::size_t end = std::min(position.size(), begin + particles_per_task);
-    for (std::size_t at = begin; at < end; ++at) {
-      const auto i = static_cast<std::uint32_t>(at);
-      if (!position[i].allFinite())
-        continue;
-      levels.visit(position[i], radius[i], reach, [&](std::uint32_t j, bool is_larger) {
-        if (!is_larger && j <= i) // found from the other one
-          return;
-        const double limit = radius[i] + radius[j] + reach;
-        if (period.shortest(position[j] - position[i]).squaredNorm() <=
-                limit * limit * (1 + 1e-12) &&
-            period.shortest(position[j] - position[i]).norm() - (radius[i] + radius[j]) <= reach)
-          found[t].push_back({std::min(i, j), std::max(i, j)});
-      });
+  const Query<dim> query{position, radius, reach, period};
+  const std::vector<Level<dim>> levels = levels_of(query);
+  std::vector<std::vector<Pair>> found; // of each thread, in any order
+#pragma omp parallel if (position.size() > particles_worth_threads)
+  {
+    std::vector<Pair> own;
+    for (std::size_t from = 0; from < levels.size(); ++from) {
+      const auto rows = levels[from].rows.rows();
+#pragma omp for schedule(dynamic) nowait
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        for (std::size_t to = from; to < levels.size(); ++to)
+          Search<dim>(query, levels[from], levels[to], own).find(rows[r]);
     }
+#pragma omp critical
+    found.push_back(std::move(own));
   }
   return sorted(found, position.size());
 }

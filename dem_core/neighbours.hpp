@@ -13,7 +13,12 @@ namespace kerf::dem {
 /// Two particles, first < second.
 struct Pair {
   std::uint32_t first, second;
-  auto operator<=>(const Pair&) const = default;
+
+  bool operator==(const Pair&) const = default;
+  auto operator<=>(const Pair& other) const { return key() <=> other.key(); }
+
+private:
+  std::uint64_t key() const { return std::uint64_t{first} << 32 | second; } // one comparison
 };
 
 /// All pairs with a gap, distance - (r_i + r_j), of at most `reach`, in ascending order.

@@ -4,6 +4,11 @@
 #include "dem_core/neighbours.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
 
 namespace kerf {
 namespace {
@@ -23,45 +28,115 @@ std::vector<dem::Pair> all_pairs(const std::vector<Vec<dim>>& x, const std::vect
   return pairs;
 }
 
-template <int dim> void cells_find_what_comparing_all_finds() {
+template <int dim> struct Cloud {
+  std::vector<Vec<dim>> x;
+  std::vector<double> r;
+};
+
+/// Particles anywhere in a box, with radii that are as often in each octave of their range.
+template <int dim>
+Cloud<dim> cloud(std::size_t count, const Vec<dim>& lower, const Vec<dim>& upper, double least,
+                 double most) {
   std::mt19937 random(3);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967295.0; };
-  std::vector<Vec<dim>> x(400);
-  std::vector<double> r(400);
-  for (std::size_t i = 0; i < x.size(); ++i) {
+  Cloud<dim> particles;
+  for (std::size_t i = 0; i < count; ++i) {
+    Vec<dim> x;
     for (int a = 0; a < dim; ++a)
-      x[i][a] = 3.0 * uniform() - 1.2; // beyond the period, too
-    r[i] = 0.02 + 0.05 * uniform();
+      x[a] = lower[a] + (upper[a] - lower[a]) * uniform();
+    particles.x.push_back(x);
+    particles.r.push_back(least * std::pow(most / least, uniform()));
   }
-  for (const double length : {0.0, 0.31, 0.5, 1.0}) {
-    Period<dim> period;
-    period.length[0] = length;
-    EXPECT_EQ(dem::find_pairs<dim>(x, r, 0.01, period), all_pairs<dim>(x, r, 0.01, period));
-  }
-}
-TEST(Neighbours, in_cells_are_those_of_comparing_all_with_all_in_2D) {
-  cells_find_what_comparing_all_finds<2>();
-}
-TEST(Neighbours, in_cells_are_those_of_comparing_all_with_all_in_3D) {
-  cells_find_what_comparing_all_finds<3>();
+  return particles;
 }
 
+/// @return the number of pairs
+template <int dim>
+std::size_t expect_all_pairs(const Cloud<dim>& particles, double reach, const Period<dim>& period) {
+  const auto expected = all_pairs<dim>(particles.x, particles.r, reach, period);
+  EXPECT_EQ(dem::find_pairs<dim>(particles.x, particles.r, reach, period), expected);
+  return expected.size();
+}
+
+/// Periodic along none, each and all of the axes; with particles several periods away, too.
+template <int dim> void rows_find_what_comparing_all_finds(double least, double most) {
+  const auto particles =
+      cloud<dim>(400, Vec<dim>::Constant(-1.2), Vec<dim>::Constant(1.8), least, most);
+  for (const double edge : {4.0 * most + 0.02, 0.73, 1.0, 4.0})
+    for (int axes = 0; axes < 1 << dim; ++axes) {
+      Period<dim> period;
+      for (int a = 0; a < dim; ++a)
+        period.length[a] = axes >> a & 1 ? edge : 0.0;
+      EXPECT_GT(expect_all_pairs<dim>(particles, 0.01, period), 10u);
+    }
+}
+TEST(Neighbours, in_rows_are_those_of_comparing_all_with_all_in_2D) {
+  rows_find_what_comparing_all_finds<2>(0.02, 0.07);
+}
+TEST(Neighbours, in_rows_are_those_of_comparing_all_with_all_in_3D) {
+  rows_find_what_comparing_all_finds<3>(0.05, 0.12);
+}
 TEST(Neighbours, of_very_different_sizes_are_those_of_comparing_all_with_all) {
-  std::mt19937 random(5);
-  const auto uniform = [&] { return static_cast<double>(random()) / 4294967295.0; };
-  std::vector<Vec<3>> x(500);
-  std::vector<double> r(500);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = {uniform(), uniform(), uniform()};
-    r[i] = i < 3 ? 0.3 : i < 50 ? 0.03 : 0.003;
-  }
-  EXPECT_EQ(dem::find_pairs<3>(x, r, 0.01, {}), all_pairs<3>(x, r, 0.01, {}));
+  rows_find_what_comparing_all_finds<2>(0.0015, 0.15);
+  rows_find_what_comparing_all_finds<3>(0.0015, 0.15);
 }
 
-TEST(Neighbours, are_found_although_a_particle_is_lost_in_space) {
-  const std::vector<Vec<2>> x = {{0.0, 0.0}, {1e300, 0.0}, {std::nan(""), 0.0}, {1.0, 0.0}};
-  const std::vector<double> r(4, 0.6);
-  EXPECT_EQ(dem::find_pairs<2>(x, r, 0.0, {}), (std::vector<dem::Pair>{{0, 3}}));
+TEST(Neighbours, in_thin_slabs_and_bars_are_those_of_comparing_all_with_all) {
+  for (int thin = 1; thin < 7; ++thin) {
+    Vec<3> upper;
+    for (int a = 0; a < 3; ++a)
+      upper[a] = thin >> a & 1 ? 1e-3 : thin == 1 || thin == 2 || thin == 4 ? 1.0 : 5.0;
+    EXPECT_GT(expect_all_pairs<3>(cloud<3>(400, Vec<3>::Zero(), upper, 0.01, 0.02), 0.01, {}), 50u);
+  }
+}
+
+TEST(Neighbours, where_all_are_at_one_place_are_all) {
+  const auto particles = cloud<3>(200, Vec<3>::Zero(), Vec<3>::Constant(0.1), 0.5, 0.9);
+  EXPECT_EQ(expect_all_pairs<3>(particles, 0.01, {}), 200u * 199u / 2u);
+}
+
+// At distances of exactly half a period two images of a neighbour are equally near: it counts once.
+TEST(Neighbours, at_half_a_period_count_once) {
+  Cloud<3> lattice;
+  for (int i = 0; i < 64; ++i)
+    lattice.x.push_back(0.5 * Vec<3>(i % 4, i / 4 % 4, i / 16));
+  lattice.r.assign(64, 0.25);
+  EXPECT_GT(expect_all_pairs<3>(lattice, 0.5, {Vec<3>::Constant(2.0)}), 0u);
+  EXPECT_GT(expect_all_pairs<3>(lattice, 0.0, {Vec<3>(2.0, 2.0, 0.0)}), 0u);
+  lattice.x.resize(8);
+  for (int i = 0; i < 8; ++i)
+    lattice.x[i] = 0.5 * Vec<3>(i & 1, i >> 1 & 1, i >> 2);
+  lattice.r.resize(8);
+  EXPECT_EQ(expect_all_pairs<3>(lattice, 0.0, {Vec<3>::Ones()}), 12u);
+}
+
+// A reach below zero asks for overlaps; one that is larger than both radii together finds nobody.
+TEST(Neighbours, that_overlap_by_more_than_an_amount_can_be_asked_for) {
+  const auto particles = cloud<2>(300, Vec<2>::Zero(), Vec<2>::Ones(), 0.01, 0.08);
+  EXPECT_GT(expect_all_pairs<2>(particles, -0.03, {}), 50u);
+  EXPECT_EQ(expect_all_pairs<2>(particles, -0.3, {}), 0u);
+}
+
+TEST(Neighbours, are_found_although_particles_are_lost_in_space) {
+  auto particles = cloud<3>(400, Vec<3>::Zero(), Vec<3>::Ones(), 0.01, 0.1);
+  particles.x[7] = {1e300, 0.5, 0.5};
+  particles.x[20] = {0.5, -1e300, 0.5};
+  particles.x[21] = {0.5, -1e200, 1e16};
+  particles.x[100] = {0.5, 0.5, std::numeric_limits<double>::infinity()};
+  particles.x[101] = {std::nan(""), 0.5, 0.5};
+  particles.x[102] = particles.x[103] = {1e6, 1e7, 1e8};
+  EXPECT_GT(expect_all_pairs<3>(particles, 0.01, {}), 50u);
+  particles.x[21] = {0.5, -1e6, 1e9};
+  EXPECT_GT(expect_all_pairs<3>(particles, 0.01, {Vec<3>(0.0, 0.0, 1.0)}), 50u);
+}
+
+TEST(Neighbours, are_the_same_for_any_number_of_threads) {
+  const auto particles = cloud<3>(5000, Vec<3>::Zero(), Vec<3>::Ones(), 0.01, 0.05);
+  omp_set_num_threads(1);
+  const auto alone = dem::find_pairs<3>(particles.x, particles.r, 0.01, {});
+  omp_set_num_threads(3);
+  EXPECT_EQ(dem::find_pairs<3>(particles.x, particles.r, 0.01, {}), alone);
+  omp_set_num_threads(omp_get_num_procs());
 }
 
 /// Two touching discs far from a third that flies past; the list is made again on the way.
