@@ -94,14 +94,19 @@ private:
 
   template <class Number> void numbers(const Number* first, std::size_t count) {
     using Stored = typename StoredAs<Number>::type;
-    StateArray& array = state_.try_emplace(path_, std::vector<Stored>()).first->second;
-    auto& stored = std::get<std::vector<Stored>>(array);
+    if (array_ == nullptr || path_ != path_of_array_) {
+      array_ = &state_.try_emplace(path_, std::vector<Stored>()).first->second;
+      path_of_array_ = path_;
+    }
+    auto& stored = std::get<std::vector<Stored>>(*array_);
     for (std::size_t k = 0; k < count; ++k)
       stored.push_back(static_cast<Stored>(first[k]));
   }
   template <class Item> void resize(std::vector<Item>&, std::size_t) {}
 
   State& state_;
+  StateArray* array_ = nullptr; // the last one: the next part of a list has the same
+  std::string path_of_array_;
 };
 
 /// Sets what it visits to the numbers of a state.
@@ -125,14 +130,19 @@ private:
   /// @throws std::invalid_argument when the state has no such numbers
   template <class Number> void numbers(Number* first, std::size_t count) {
     using Stored = typename StoredAs<Number>::type;
-    const auto found = state_.find(path_);
-    const auto* stored =
-        found == state_.end() ? nullptr : std::get_if<std::vector<Stored>>(&found->second);
+    if (array_ == nullptr || path_ != path_of_array_) {
+      const auto found = state_.find(path_);
+      array_ = found == state_.end() ? nullptr : &found->second;
+      path_of_array_ = path_;
+      if (array_ != nullptr)
+        array_taken_ = &taken_[path_];
+    }
+    const auto* stored = std::get_if<std::vector<Stored>>(array_);
     if (stored == nullptr && count == 0)
       return;
     if (stored == nullptr)
       throw std::invalid_argument("there is no \"" + path_ + "\"");
-    std::size_t& taken = taken_[path_];
+    std::size_t& taken = *array_taken_;
     if (stored->size() - taken < count)
       throw std::invalid_argument("\"" + path_ + "\" is shorter than it should be");
     for (std::size_t k = 0; k < count; ++k)
@@ -150,7 +160,10 @@ private:
   }
 
   const State& state_;
-  std::map<std::string, std::size_t> taken_;
+  std::map<std::string, std::size_t> taken_; // of each array
+  const StateArray* array_ = nullptr;        // the last one: the next part of a list has the same
+  std::size_t* array_taken_ = nullptr;
+  std::string path_of_array_;
 };
 
 } // namespace kerf

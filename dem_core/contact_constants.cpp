@@ -155,6 +155,14 @@ void set_constants(Contacts<dim>& c, const Particles<dim>& particles, const Mate
     constants[which].first->set_each(std::move(each[which]));
 }
 
+template <int dim>
+PairConstants pair_constants(const Material& material, double density, double r_i, double r_j) {
+  const Constants c = constants_of<dim>(material, density, r_i, r_j, false);
+  return {law_of(material), c.k_n, c.k_t, c.k_b, c.c_n, c.c_t};
+}
+
+template PairConstants pair_constants<2>(const Material&, double, double, double);
+template PairConstants pair_constants<3>(const Material&, double, double, double);
 template void set_constants<2>(Contacts<2>&, const Particles<2>&, const Material&);
 template void set_constants<3>(Contacts<3>&, const Particles<3>&, const Material&);
 

@@ -32,4 +32,13 @@ template <int dim>
 void set_constants(Contacts<dim>& contacts, const Particles<dim>& particles,
                    const Material& material);
 
+/// Those of a contact without bond between two radii, as above.
+struct PairConstants {
+  ContactLaw law = ContactLaw::linear;
+  double normal_stiffness = 0.0, tangential_stiffness = 0.0, bending_stiffness = 0.0;
+  double normal_viscosity = 0.0, tangential_viscosity = 0.0;
+};
+template <int dim>
+PairConstants pair_constants(const Material& material, double density, double r_i, double r_j);
+
 } // namespace kerf::dem

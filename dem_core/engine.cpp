@@ -3,6 +3,7 @@
 #include "common/ordered_sum.hpp"
 #include "dem_core/balance.hpp"
 #include "dem_core/contact_constants.hpp"
+#include "dem_core/contacts_to_come.hpp"
 #include "dem_core/damping.hpp"
 #include "dem_core/gravity.hpp"
 #include "dem_core/initial.hpp"
@@ -52,6 +53,8 @@ Engine<dim>::Engine(const Settings<dim>& settings)
   skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
   bonds_at_start_ = contacts_.bonds();
   add_tools(settings);
+  if (settings.in_situ_stress)
+    load_bonds(*settings.in_situ_stress);
   start_rotation_ = apply_initial_displacements<dim>(initial_, particles_);
   for (std::size_t i = 0; i < size(); ++i)
     if (particles_.is_member(i) &&
@@ -71,6 +74,19 @@ template <int dim> void Engine<dim>::add_tools(const Settings<dim>& settings) {
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("tool {}: {}", tool.name, error.what()));
     }
+}
+
+template <int dim> void Engine<dim>::load_bonds(const InSituStress<dim>& stress) {
+  if (clusters_.size() > 0)
+    throw ImpossibleStress("there are clusters, which have no stress");
+  Loads<dim> outside; // of the start
+  outside.own.resize(size());
+  const ParticleBlock all{0, size()};
+  add_weight(gravity_, particles_, all, outside);
+  applied_forces_.begin_step(0.0, particles_);
+  applied_forces_.add(all, outside);
+  in_situ_stress_ = set_in_situ_stress<dim>(stress, gravity_, outside.own, particles_, boundary_,
+                                            period_, contacts_, wall_contacts_);
 }
 
 template <int dim> std::vector<double> Engine<dim>::stiffness() const {
@@ -131,6 +147,24 @@ template <int dim> StepLimit Engine<dim>::step_limit() const {
     if (of_clusters[k] > limit.omega2)
       limit = {of_clusters[k], fmt::format("cluster {}", k)};
   limit.omega2 = with_dashpots(limit.omega2, dashpot_time(contacts_, particles_));
+  return limit;
+}
+
+template <int dim> StepLimit Engine<dim>::step_limit_to_come() const {
+  const ContactsToCome to_come =
+      contacts_to_come(material_, contacts_, particles_, boundary_, clusters_);
+  const std::vector<double> walls = wall_sums<dim>(tools_, wall_contacts_, particles_, boundary_);
+  StepLimit limit;
+  for (std::size_t i = 0; i < size(); ++i)
+    if (to_come.particles[i] > 0.0 && to_come.particles[i] + walls[i] > limit.omega2)
+      limit = {to_come.particles[i] + walls[i],
+               fmt::format("contacts to come of particle {}", particles_.ids[i])};
+  const std::vector<double> of_clusters = cluster_sums();
+  for (std::size_t k = 0; k < of_clusters.size(); ++k)
+    if (const double sum = to_come.clusters[k] + of_clusters[k];
+        to_come.clusters[k] > 0.0 && sum > limit.omega2)
+      limit = {sum, fmt::format("contacts to come of cluster {}", k)};
+  limit.omega2 = with_dashpots(limit.omega2, to_come.dashpot_time);
   return limit;
 }
 

@@ -10,6 +10,7 @@
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
+#include "dem_core/in_situ_stress.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/reactions.hpp"
 #include "dem_core/settings.hpp"
@@ -80,7 +81,14 @@ public:
   /// @param weight  [size] > 0; empty: one everywhere
   void set_weights(std::span<const double> weight);
 
+  /// Of the stress at the start; nothing when the settings have none.
+  const std::optional<InSituReport<dim>>& in_situ_stress() const noexcept {
+    return in_situ_stress_;
+  }
   StepLimit step_limit() const;
+  /// What it may come to be with contacts that loose particles do not have yet; 0 when there are
+  /// none. See contacts_to_come().
+  StepLimit step_limit_to_come() const;
   AddedMass added_mass() const;
   /// Blended inverse mass, 0 where prescribed, 1/kg.
   void inverse_mass(std::span<const std::uint32_t> points, std::span<double> out) const;
@@ -139,6 +147,7 @@ private:
   friend struct StateParts;
 
   void add_tools(const Settings<dim>& settings);
+  void load_bonds(const InSituStress<dim>& stress);
   void scale_mass();
   std::vector<double> row_sums() const;
   std::vector<double> cluster_sums() const;
@@ -162,6 +171,7 @@ private:
   std::vector<std::string> tool_names_;
   std::vector<Tool<dim>> tools_;
   std::vector<WallContacts<dim>> wall_contacts_;
+  std::optional<InSituReport<dim>> in_situ_stress_;
   std::optional<MassScaling> mass_scaling_;
   Vec<dim> gravity_;                              // m/s²
   double weight_work_at_start_ = 0.0;             // J

@@ -1,4 +1,5 @@
 // What the engine adds to masses for a larger step.
+#include "dem_core/contacts_to_come.hpp"
 #include "dem_core/engine.hpp"
 #include "dem_core/time_step.hpp"
 
@@ -25,13 +26,18 @@ template <int dim> void Engine<dim>::scale_mass() {
   std::vector<double> of_clusters(clusters_.size(), mass_scaling_->factor);
   clusters_.scale_mass(std::vector<double>(clusters_.size(), 1.0)); // as they were
   if (const double step = mass_scaling_->critical_step; step > 0.0) {
-    const double time = dashpot_time(contacts_, particles_);
+    const ContactsToCome to_come =
+        contacts_to_come(material_, contacts_, particles_, boundary_, clusters_);
+    const double time = std::max(dashpot_time(contacts_, particles_), to_come.dashpot_time);
     const double wished = 1.0 / (0.25 * step * step + 0.5 * time * step); // see with_dashpots()
+    const std::vector<double> walls = wall_sums<dim>(tools_, wall_contacts_, particles_, boundary_);
     const std::vector<double> sums = row_sums(), sums_of_clusters = cluster_sums();
     for (std::size_t i = 0; i < size(); ++i)
-      of_particles[i] = std::max(1.0, sums[i] / wished);
+      of_particles[i] =
+          std::max({1.0, sums[i] / wished,
+                    to_come.particles[i] > 0.0 ? (to_come.particles[i] + walls[i]) / wished : 0.0});
     for (std::size_t k = 0; k < of_clusters.size(); ++k)
-      of_clusters[k] = std::max(1.0, sums_of_clusters[k] / wished);
+      of_clusters[k] = std::max(1.0, (sums_of_clusters[k] + to_come.clusters[k]) / wished);
   }
   for (std::size_t i = 0; i < size(); ++i)
     if (!particles_.is_member(i)) {

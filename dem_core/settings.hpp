@@ -152,6 +152,18 @@ template <int dim> struct ToolSettings {
   WallMaterial material;
 };
 
+/// Of the bonds at the start; tension is positive. The components are xx yy xy in 2D and
+/// xx yy zz yz xz xy in 3D.
+template <int dim> struct InSituStress {
+  Eigen::Matrix<double, dim == 2 ? 3 : 6, 1> uniform = Eigen::Matrix < double, dim == 2 ? 3 : 6,
+                                             1 > ::Zero(); // Pa
+  /// Adds sigma_v = overburden + rho g depth along gravity and K0 sigma_v across it, as pressures.
+  /// rho is the bulk density of the body.
+  std::optional<double> K0;
+  double surface = 0.0;    // where depth is zero: height against gravity, m
+  double overburden = 0.0; // Pa
+};
+
 template <int dim> struct Settings {
   std::vector<Vec<dim>> positions; // [n] centres in the reference configuration, m
   std::vector<double> radii;       // [n] m
@@ -168,6 +180,7 @@ template <int dim> struct Settings {
   std::vector<ToolSettings<dim>> tools;
   std::vector<ClusterSettings<dim>> clusters;
   std::optional<MassScaling> mass_scaling;
+  std::optional<InSituStress<dim>> in_situ_stress;
   Vec<dim> gravity = Vec<dim>::Zero(); // of the particles; a free tool has its own force, m/s²
 };
 

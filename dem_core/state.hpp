@@ -264,9 +264,9 @@ struct StateParts {
   static void of(Whole& whole, Visit& visit) {
     auto& [material, damping, shear_increment, initial, period, particles, boundary, clusters,
            reactions, applied_forces, contacts, skin, tool_names, tools, wall_contacts,
-           mass_scaling, gravity, weight_work_at_start, start_rotation, bonds_at_start, renewals,
-           travelled, time_step, step, forces_are_current, loads, touched, is_touched,
-           interface_forces_are_old, cracks, work, work_ahead] = whole;
+           in_situ_stress, mass_scaling, gravity, weight_work_at_start, start_rotation,
+           bonds_at_start, renewals, travelled, time_step, step, forces_are_current, loads, touched,
+           is_touched, interface_forces_are_old, cracks, work, work_ahead] = whole;
     visit("time_step", time_step);
     visit("step", step);
     visit("particles", particles);

@@ -99,6 +99,18 @@ WallContacts<dim>::WallContacts(const WallMaterial& material, const Tool<dim>& t
   worn_ = skin_; // whatever moves the particles before the first step
 }
 
+template <int dim> void WallContacts<dim>::preload(std::span<const double> normal_force) {
+  std::size_t next = 0;
+  for (Block& block : blocks_)
+    for (std::size_t k = 0; k < block.now.size(); ++k) {
+      WallContact<dim>& contact = block.now.contacts[k];
+      contact.normal_force = normal_force[next++];
+      contact.shear_force.setZero();
+      contact.rest_gap =
+          block.now.places[k].gap - contact.normal_force / material_.normal_stiffness;
+    }
+}
+
 /// The image of a position that may touch the tool.
 template <int dim>
 Vec<dim> WallContacts<dim>::image(const Tool<dim>& tool, const Vec<dim>& position) const {
@@ -235,6 +247,7 @@ void WallContacts<dim>::touch(Block& block, const ToolShape<dim>& shape, const A
   const std::span before = std::span(block.before.places).subspan(first, last - first);
   block.from.resize(block.found.size());
   shape.continue_contacts(before, block.found, block.from);
+  continue_across_seam(block, approach, first, last);
   for (std::size_t k = 0; k < block.found.size(); ++k) {
     const bool is_new = block.from[k] == no_contact;
     const std::size_t old = first + (is_new ? 0 : block.from[k]);
@@ -248,6 +261,25 @@ void WallContacts<dim>::touch(Block& block, const ToolShape<dim>& shape, const A
   for (std::uint32_t k = 0; k < before.size(); ++k)
     if (std::ranges::find(block.from, k) == block.from.end())
       end(block.before.contacts[first + k], before[k], approach, block.friction_loss);
+}
+
+/// Where another image of the particle counts now, it touches the same place of a tool that goes on
+/// there with other facets: a contact with nearly the same normal continues.
+template <int dim>
+void WallContacts<dim>::continue_across_seam(Block& block, const Approach& approach,
+                                             std::size_t first, std::size_t last) const {
+  constexpr double least_cosine = 0.9;
+  for (std::size_t k = 0; k < block.found.size(); ++k)
+    for (std::size_t old = first; old < last && block.from[k] == no_contact; ++old) {
+      const Vec<dim>& arm = block.before.contacts[old].arm;
+      const FacetContact<dim>& place = block.before.places[old];
+      const auto index = static_cast<std::uint32_t>(old - first);
+      const Vec<dim> jump = approach.centre - approach.moved - (place.point - arm);
+      const double cosine = place.normal.dot(block.found[k].normal);
+      if (jump.norm() > arm.norm() && cosine > least_cosine &&
+          std::ranges::find(block.from, index) == block.from.end())
+        block.from[k] = index;
+    }
 }
 
 /// The law. Halfway through the step is where the normal is the mean of both; the shear force

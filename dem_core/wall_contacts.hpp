@@ -5,6 +5,7 @@
 #include "dem_core/tool.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kerf::dem {
@@ -48,6 +49,10 @@ public:
                         const Increment<dim>& increment, double time, Loads<dim>& loads) {
     return compute_block(blocks_[block], {tool, particles, increment, time}, loads);
   }
+
+  /// Makes the normal forces of all contacts those given, in the order of for_each(), by the gap
+  /// at which they are free of stress; before the first step.
+  void preload(std::span<const double> normal_force);
 
   const WallMaterial& material() const noexcept { return material_; }
   std::size_t size() const noexcept;
@@ -100,6 +105,8 @@ private:
   ToolLoad<dim> compute_block(Block& block, const Step& step, Loads<dim>& loads) const;
   void touch(Block& block, const ToolShape<dim>& shape, const Approach& approach, std::size_t first,
              std::size_t last) const;
+  void continue_across_seam(Block& block, const Approach& approach, std::size_t first,
+                            std::size_t last) const;
   void follow(WallContact<dim>& contact, const FacetContact<dim>& now,
               const FacetContact<dim>* before, const Approach& approach, double& loss) const;
   void end(const WallContact<dim>& contact, const FacetContact<dim>& before,

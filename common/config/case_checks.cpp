@@ -54,6 +54,8 @@ private:
       check_tools(key, participant["tools"]);
       check_loads(key + ".loads", participant["loads"]);
       check_clusters(key + ".clusters", participant["clusters"]);
+      if (!participant["in_situ_stress"].is_null())
+        check_in_situ_stress(key, participant);
       if (!participant["mass_scaling"].is_null())
         check_mass_scaling(key, participant);
     } else {
@@ -232,6 +234,38 @@ private:
         problems_.add(key + ".file", key + ".file is given, but its bodies are free.",
                       "give motion = \"free\", or a prescribed body by its box or ids.");
     }
+  }
+
+  /// Bonds carry it, and elements have none.
+  void check_in_situ_stress(const string& participant, const json& table) {
+    const string key = participant + ".in_situ_stress";
+    const json& stress = table["in_situ_stress"];
+    const bool is_uniform = !stress["stress"].is_null();
+    if (is_uniform != stress["K0"].is_null())
+      problems_.add(key, key + " needs either stress or K0.", "give one of them.");
+    const std::size_t count = is_plane_ ? 3 : 6;
+    if (is_uniform && stress["stress"].size() != count)
+      problems_.add(key + ".stress",
+                    fmt::format("{}.stress has {} numbers, but case.dimension = {}.", key,
+                                stress["stress"].size(), is_plane_ ? 2 : 3),
+                    is_plane_ ? "give xx yy xy." : "give xx yy zz yz xz xy.");
+    if (!stress["K0"].is_null() && stress["surface"].is_null())
+      problems_.add(key + ".surface", key + ".surface is missing.",
+                    "give the height of the ground, where depth is zero.");
+    if (!stress["K0"].is_null() && table["gravity"].is_null())
+      problems_.add(key + ".K0", key + ".K0 is given, but there is no gravity.",
+                    "give gravity, or stress instead of K0.");
+    if (table["bonds"]["kind"] == "none" || table["material"]["law"] == "hertz_mindlin")
+      problems_.add(key, key + " is given, but there are no bonds that could carry it.",
+                    "leave it out, or give bonds.");
+    if (!table["clusters"].empty())
+      problems_.add(key, key + " is given, but clusters have no stress.", "leave out one of them.");
+    const string name = participant.substr(participant.rfind('.') + 1);
+    for (const json& coupling : settings_["couplings"])
+      for (const json& member : coupling["between"])
+        if (member == name)
+          problems_.add(key, key + " is given, but elements have no stress at the start.",
+                        "leave it out, or the coupling.");
   }
 
   /// Waves are slower in heavier particles.

@@ -154,6 +154,23 @@ std::vector<Key> load_keys() {
   };
 }
 
+std::vector<Key> in_situ_keys() {
+  using enum Type;
+  return {
+      {"participants.*.in_situ_stress", "dem", optional_table, "", none, anything, "in-situ stress",
+       "stress that the bonds have at the start, in equilibrium"},
+      {"participants.*.in_situ_stress.stress", "dem", numbers, "Pa", none, anything,
+       "[-5e6, -10e6, 0.0]",
+       "its mean: xx yy xy, in 3D xx yy zz yz xz xy; compression is negative"},
+      {"participants.*.in_situ_stress.K0", "dem", number, "", none, in(from_zero), "0.5",
+       "instead of stress: the horizontal over the vertical one, which is rho g depth"},
+      {"participants.*.in_situ_stress.surface", "dem", number, "m", none, anything, "100.0",
+       "with K0 the height of the ground, against gravity, where depth is zero"},
+      {"participants.*.in_situ_stress.overburden", "dem", number, "Pa", "0.0", in(from_zero), "1e6",
+       "with K0 the vertical pressure on the ground"},
+  };
+}
+
 std::vector<Key> mass_scaling_keys() {
   using enum Type;
   return {
@@ -269,8 +286,8 @@ std::vector<Key> motion_keys(const std::string& kind) {
 
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
-                 tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(), mass_scaling_keys(),
-                 watch_of_particles()});
+                 tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(), in_situ_keys(),
+                 mass_scaling_keys(), watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {

@@ -10,6 +10,7 @@
 #include "dem_core/spatial_order.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 #include <spdlog/spdlog.h>
@@ -110,6 +111,8 @@ template <int dim> Engine<dim> make_engine(const json& table, const json& case_t
   put_in_spatial_order(settings);
   try {
     return Engine<dim>(settings);
+  } catch (const ImpossibleStress& error) {
+    throw SettingsError("in_situ_stress", error.what());
   } catch (const std::invalid_argument& error) {
     throw SettingsError("particles", error.what());
   }
@@ -129,7 +132,9 @@ template <int dim> coupler::Declaration declare(const Engine<dim>& engine) {
   return d;
 }
 
-template <int dim> coupler::Limits limits_of(const Engine<dim>& engine, const coupler::Plan& plan) {
+template <int dim>
+coupler::Limits limits_of(const Engine<dim>& engine, const coupler::Plan& plan,
+                          const json& case_table) {
   coupler::Limits limits;
   for (const coupler::Interface& interface : plan.interfaces) {
     std::vector<double> inverse_mass(interface.points.size() * dim);
@@ -139,7 +144,10 @@ template <int dim> coupler::Limits limits_of(const Engine<dim>& engine, const co
     limits.inverse_mass.push_back(std::move(inverse_mass));
     limits.omega2.push_back(std::move(omega2));
   }
-  const StepLimit own = engine.step_limit();
+  StepLimit own = engine.step_limit();
+  if (!case_table.value("time_step", json()).is_number()) // a given one is compared with what is
+    if (const StepLimit to_come = engine.step_limit_to_come(); to_come.omega2 > own.omega2)
+      own = to_come;
   limits.largest_omega2 = own.omega2;
   limits.limited_by = own.limited_by;
   return limits;
@@ -198,6 +206,24 @@ template <int dim> json mass_scaling_of(const Engine<dim>& engine, const json& t
           {"largest_factor_particle", mass.largest_id}};
 }
 
+/// The stress at the start, for the log and the summary; null without one.
+template <int dim> json in_situ_stress_of(const Engine<dim>& engine) {
+  if (!engine.in_situ_stress())
+    return nullptr;
+  const InSituReport<dim>& report = *engine.in_situ_stress();
+  spdlog::info("in-situ stress: the mean is [{:.6g}] Pa, wanted were [{:.6g}] Pa; the bulk density "
+               "is {:.5g} kg/m³. {} bonds and {} contacts with tools carry it, {} contacts with "
+               "tools are open, {} particles have too few bonds. No resultant exceeds {:.2g} of "
+               "the mean contact force.",
+               fmt::join(report.found, ", "), fmt::join(report.wanted, ", "), report.bulk_density,
+               report.bonds, report.wall_contacts, report.open_contacts, report.without_stress,
+               report.unbalanced);
+  return {{"mean_stress", std::vector<double>(report.found.begin(), report.found.end())},
+          {"bulk_density", report.bulk_density},
+          {"unbalanced", report.unbalanced},
+          {"particles_without_stress", report.without_stress}};
+}
+
 template <int dim>
 int run(coupler::Participant& broker, const json& table, const json& case_table) {
   Watch<dim> watch = read_watch<dim>(table);
@@ -210,9 +236,10 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
   const coupler::Plan& plan = broker.declare(declare(engine));
   refuse_coupled_clusters(engine, plan);
   engine.set_weights(plan.weights);
-  const coupler::Schedule& schedule = broker.initialize(limits_of(engine, plan));
+  const coupler::Schedule& schedule = broker.initialize(limits_of(engine, plan, case_table));
 
   const json scaling = mass_scaling_of(engine, table);
+  const json stress = in_situ_stress_of(engine);
   const coupler::Assignment& assignment = broker.assignment();
   if (assignment.plan_only) {
     broker.finalize();
@@ -242,6 +269,8 @@ int run(coupler::Participant& broker, const json& table, const json& case_table)
                   {"contact_list_renewals", engine.renewals()}};
   if (!scaling.is_null())
     summary["mass_scaling"] = scaling;
+  if (!stress.is_null())
+    summary["in_situ_stress"] = stress;
   broker.finalize(summary.dump());
   return 0;
 }

@@ -192,6 +192,22 @@ template <int dim> double read_gap_tolerance(const Node& bonds, const Settings<d
   }
 }
 
+template <int dim> InSituStress<dim> read_in_situ_stress(const Node& node) {
+  InSituStress<dim> stress;
+  if (const Node uniform = node["stress"]; !uniform.is_null()) {
+    constexpr std::size_t count = dim == 2 ? 3 : 6;
+    uniform.must_hold(count, dim == 2 ? "numbers: xx yy xy" : "numbers: xx yy zz yz xz xy");
+    for (std::size_t k = 0; k < count; ++k)
+      stress.uniform[static_cast<int>(k)] = uniform[k].number();
+  }
+  if (const Node K0 = node["K0"]; !K0.is_null()) {
+    stress.K0 = K0.not_negative_or(0.0);
+    stress.surface = node["surface"].number();
+    stress.overburden = node["overburden"].not_negative_or(0.0);
+  }
+  return stress;
+}
+
 } // namespace
 
 template <int dim>
@@ -223,6 +239,8 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
   s.gravity = node["gravity"].vector_or_zero<dim>();
   s.tools = read_tools<dim>(node["tools"]);
   s.clusters = read_clusters<dim>(node["clusters"], s.positions.size());
+  if (const Node stress = node["in_situ_stress"]; !stress.is_null())
+    s.in_situ_stress = read_in_situ_stress<dim>(stress);
   if (const Node scaling = node["mass_scaling"]; !scaling.is_null())
     s.mass_scaling = MassScaling{.critical_step = scaling["critical_step"].not_negative_or(0.0),
                                  .factor = scaling["factor"].number_or(1.0)};

@@ -86,6 +86,18 @@ class BrokenCases(KerfTest):
                             "particles.radius = -1e-3\nmaterial = { density = 2600.0", 9,
                             "participants.rock.particles.radius", "-0.001")
 
+    def test_particles_without_size_or_mass_are_refused(self):
+        self.assert_refused("material = { density = 2600.0",
+                            "particles.radius = 0.0\nmaterial = { density = 2600.0", 9,
+                            "participants.rock.particles.radius = 0", "greater than 0")
+        self.assert_refused("density = 2600.0", "density = 0.0", 9,
+                            "participants.rock.material.density = 0", "greater than 0")
+        (self.folder / "stones.txt").write_text("0.0 0.0 1e-3\n5e-3 0.0 0.0\n")
+        lattice = GOOD[GOOD.index("particles.lattice"):GOOD.index("\nmaterial = { density = 2600")]
+        result = self.kerf("check", self.write_case(GOOD.replace(lattice, 'particles.file = "stones.txt"')))
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("stones.txt:2: the radius 0 m must be positive", result.stderr)
+
     def test_a_missing_file_is_named(self):
         lattice = GOOD[GOOD.index("particles.lattice"):GOOD.index("\nmaterial = { density = 2600")]
         self.assert_refused(lattice, 'particles.file = "stones.txt"', 8, "stones.txt")

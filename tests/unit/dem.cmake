@@ -20,6 +20,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_critical_step.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_energy.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_impact.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_in_situ_stress.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_mass_scaling.cpp
@@ -39,3 +40,5 @@ kerf_python_test(case.tools verification/tools.py Tools)
 kerf_python_test(case.boundaries verification/bodies.py Boundaries)
 kerf_python_test(case.clusters verification/bodies.py Clusters)
 kerf_python_test(case.mass_scaling verification/bodies.py MassScaling)
+kerf_python_test(case.in_situ_stress verification/bodies.py InSituStress verification)
+kerf_python_test(case.grains verification/bodies.py Grains)

@@ -117,6 +117,56 @@ TEST(Engine, gives_the_same_bits_with_one_and_with_two_threads) {
   EXPECT_EQ(std::memcmp(one.data(), three.data(), one.size() * sizeof(double)), 0);
 }
 
+// A sphere a hundred times as large as those it falls on: the step chosen before they touch holds,
+// nothing is lost. Reference: momentum, and the energy but for what closing contacts miss.
+TEST(Engine, collides_particles_with_a_radius_ratio_of_100) {
+  using cases::spacing;
+  auto settings =
+      cases::lattice_model<3>(dem::LatticeType::cubic, {12, 12, 1}, cases::rock(3, 0.2));
+  for (double& radius : settings.radii)
+    radius *= 0.98;
+  settings.positions.emplace_back(5.5 * spacing, 5.5 * spacing, 50.49 * spacing);
+  settings.radii.push_back(50.0 * spacing);
+  settings.bonds = false;
+  settings.initial.resize(1);
+  settings.initial[0].box = Box<3>{{-1.0, -1.0, 40.0 * spacing}, {1.0, 1.0, 1.0}};
+  settings.initial[0].velocity = {0.0, 0.0, -0.05};
+  dem::Engine<3> engine(settings);
+  engine.start(0.8 * 2.0 / std::sqrt(engine.step_limit_to_come().omega2));
+  cases::step(engine);
+  const Vec<3> momentum = engine.momentum();
+  const double energy = engine.energies().kinetic;
+  double most_elastic = 0.0;
+  for (int n = 0; n < 4000; ++n) {
+    cases::step(engine);
+    most_elastic = std::max(most_elastic, engine.energies().elastic);
+  }
+  const dem::Energies e = engine.energies();
+  double fastest = 0.0; // of the small ones; an elastic push gives twice the velocity
+  for (std::size_t i = 0; i + 1 < engine.size(); ++i)
+    fastest = std::max(fastest, engine.particles().velocity[i].norm());
+  EXPECT_GT(most_elastic, 0.0);
+  EXPECT_GT(fastest, 0.05);
+  EXPECT_LT((engine.momentum() - momentum).norm(), 1e-10 * momentum.norm());
+  EXPECT_NEAR(e.kinetic + e.elastic + e.friction_dissipation, energy, 1e-4 * energy);
+}
+
+// A grain far from everything falls beside a bonded body and hinders nobody.
+TEST(Engine, lets_an_isolated_particle_fall) {
+  auto settings = cases::lattice_model<2>(dem::LatticeType::square, {4, 4}, cases::rock(2, 0.2));
+  settings.positions.emplace_back(1.0, 1.0);
+  settings.radii.push_back(0.1 * cases::spacing);
+  settings.gravity = {0.0, -9.81};
+  dem::Engine<2> engine(settings);
+  const double dt = 0.8 * 2.0 / std::sqrt(engine.step_limit_to_come().omega2), t = 1000 * dt;
+  EXPECT_LT(dt, 2.0 / std::sqrt(engine.step_limit().omega2)); // it is the lightest
+  engine.start(dt);
+  for (int n = 0; n < 1000; ++n)
+    cases::step(engine);
+  EXPECT_NEAR(engine.particles().displacement.back()[1], -0.5 * 9.81 * t * t, 1e-12 * t * t);
+  EXPECT_EQ(engine.first_not_finite(), std::nullopt);
+}
+
 TEST(Engine, survives_a_number_that_is_lost_and_says_where) {
   auto settings = cases::lattice_model<2>(dem::LatticeType::triangular, {6, 6}, rock(2));
   dem::Engine<2> engine(settings);

@@ -64,6 +64,8 @@ TEST(DemSettings, that_cannot_be_used_are_blamed_on_their_key) {
   auto t = table();
   t["material"]["density"] = -1.0;
   EXPECT_EQ(blamed_key(t), "material.density");
+  t["material"]["density"] = 0.0;
+  EXPECT_EQ(blamed_key(t), "material.density");
   t = table();
   t["particles"]["lattice"]["type"] = "fcc";
   EXPECT_EQ(blamed_key(t), "particles.lattice");

@@ -266,6 +266,55 @@ TEST(WallContacts, go_on_across_the_seam_of_a_period) {
   }
 }
 
+// A particle is pushed along a floor; its spring grows until it slides, the seam being in between.
+// Reference: the same on another place of the floor, without a seam.
+template <int dim>
+void expect_the_same_friction_across_a_seam(const ToolShape<dim>& floor, const Vec<dim>& place,
+                                            const Vec<dim>& at_the_seam) {
+  const auto history = [&](Vec<dim> x) {
+    x[dim - 1] = 0.9e-3;
+    auto settings = one_particle<dim>(x);
+    for (int a = 0; a < dim - 1; ++a)
+      settings.period.length[a] = 1.0;
+    Vec<dim> velocity = Vec<dim>::Ones();
+    velocity[dim - 1] = 0.0;
+    settings.boundary = {cases::prescribe_at<dim>(x, dem::Motion::velocity, velocity)};
+    settings.boundary[0].components = (1u << (dim + 1)) - 1u;
+    settings.tools = {{"floor", floor, {}, rough}};
+    dem::Engine<dim> engine(settings);
+    engine.start(1e-6);
+    std::vector<double> force;
+    for (int n = 0; n < 160; ++n) {
+      cases::step(engine);
+      for (const double component : engine.tools()[0].load().force)
+        force.push_back(component);
+    }
+    return force;
+  };
+  const std::vector<double> seam = history(at_the_seam), reference = history(place);
+  EXPECT_GT(reference[dim * 20], 10.0);                          // grows,
+  EXPECT_NEAR(reference[dim * 159], reference[dim * 158], 1e-6); // slides
+  for (std::size_t k = 0; k < reference.size(); ++k)
+    EXPECT_NEAR(seam[k], reference[k], 1e-6) << k; // 1e-9 of the normal force: digits of x
+}
+TEST(WallContacts, keep_their_friction_across_the_seam_of_a_period_2d) {
+  Surface<2> floor;
+  for (std::uint32_t k = 0; k <= 7; ++k) {
+    floor.vertices.emplace_back(k / 7.0 - 0.5, 0.0);
+    if (k > 0)
+      floor.facets.push_back({k, k - 1});
+  }
+  for (const auto& shape : {ToolShape<2>(floor), ToolShape<2>(Plane<2>{{0.0, 0.0}, {0.0, 1.0}})})
+    expect_the_same_friction_across_a_seam<2>(shape, {0.03, 0.0}, {0.49996, 0.0});
+}
+TEST(WallContacts, keep_their_friction_across_the_seams_of_a_period_3d) {
+  const auto sheet =
+      cases::sheet(5, [](double u, double v) { return Vec<3>(u - 0.5, v - 0.5, 0.0); });
+  for (const auto& shape :
+       {ToolShape<3>(sheet), ToolShape<3>(Plane<3>{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}})})
+    expect_the_same_friction_across_a_seam<3>(shape, {0.03, 0.06, 0.0}, {0.49996, 0.49998, 0.0});
+}
+
 // A sphere rolls and slides over 2 x 16² triangles, and over a plane. Both give the same but for
 // the rounding of the feet of the normals.
 TEST(WallContacts, with_a_flat_sheet_of_triangles_are_those_with_a_plane) {

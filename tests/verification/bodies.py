@@ -1,6 +1,7 @@
 """Boundaries, loads and rigid clusters of particles, as a user runs them: results, errors, the same bits."""
 
 import csv
+import json
 import math
 import os
 import sys
@@ -228,6 +229,144 @@ class MassScaling(Bodies):
                             key, "makes a wave")
         self.assert_refused(self.SCALED, "critical_step = 1e-6", "critical_step = 1e-6\nfactor = 2.0", key, "either")
         self.assert_refused(self.SCALED, "critical_step = 1e-6", "factor = 0.5", key + ".factor")
+
+
+# A random packing whose outer particles are held, under stress from the start; a part of them is let go.
+STRESSED = """[case]
+name = "stressed"
+dimension = 2
+time_step_factor = 0.7 # what is let go may have the highest frequency
+
+[case.output]
+frames = 1
+history = 20
+
+[participants.rock]
+kind = "dem"
+threads = 1
+material = { density = 2600.0, normal_stiffness = 1.6e10, tangential_stiffness = 3.2e9 }
+bonds = { coordination_number = 5.4 }
+damping = { kind = "componentwise", translation = 0.5, rotation = 0.5 }
+in_situ_stress.stress = [-5e6, -10e6, 1e6]
+
+[participants.rock.particles.packing]
+region.box = [[0.0, 0.0], [0.05, 0.05]]
+radii = { law = "uniform", min = 0.5e-3, max = 0.8e-3 }
+porosity = 0.15
+
+[[participants.rock.boundary]]
+box = [[-1.0, -1.0], [2e-3, 1.0]]
+motion = "fixed"
+
+[[participants.rock.boundary]]
+box = [[48e-3, -1.0], [1.0, 1.0]]
+motion = "fixed"
+
+[[participants.rock.boundary]]
+box = [[-1.0, -1.0], [1.0, 2e-3]]
+motion = "fixed"
+
+[[participants.rock.boundary]]
+box = [[-1.0, 48e-3], [1.0, 1.0]]
+motion = "fixed"
+
+[[participants.rock.probes]]
+name = "middle"
+box = [[3e-3, 3e-3], [47e-3, 47e-3]]
+
+[[stages]]
+name = "rest"
+duration = 1e-4
+
+[[stages]]
+name = "open_top"
+duration = 1e-3
+stop = [{ name = "at_rest", quantity = "unbalanced_force", below = 1e-4, after = 2e-4 }]
+[[stages.changes]]
+boundary = [{ box = [[-1.0, -1.0], [2e-3, 1.0]], components = ["x", "rotation"], motion = "fixed" },
+            { box = [[48e-3, -1.0], [1.0, 1.0]], components = ["x", "rotation"], motion = "fixed" },
+            { box = [[-1.0, -1.0], [1.0, 2e-3]], components = ["y", "rotation"], motion = "fixed" }]
+"""
+
+
+class InSituStress(Bodies):
+    def test_is_what_a_probe_reads_until_something_is_let_go(self):
+        run = self.run_case(self.write_case(STRESSED))
+        probe, rock = rows(run, "rock_middle"), rows(run, "rock")
+        last = max(k for k, stage in enumerate(rock["stage"]) if stage == 0)
+        self.assertGreater(last, 0)
+        wanted = (-5e6, -10e6, 1e6)
+        for k in (0, last):
+            read = [probe["stress_" + c][k] for c in ("xx", "yy", "xy")]
+            self.verify("stress that a probe reads in a random packing, over the largest component",
+                        "the stress that was prescribed", max(abs(a - b) for a, b in zip(read, wanted)) / 10e6, 0.03,
+                        "the box cuts contacts at its edge, 70 particles long")
+            self.assertLess(rock["unbalanced_force"][k], 1e-8)
+        self.assertLess(rock["kinetic_energy"][last], 1e-12 * rock["elastic_energy"][last])
+        about = json.loads((run / "run.json").read_text())["participants"]["rock"]
+        stress = json.dumps(about)
+        self.assertIn("in_situ_stress", stress)
+        self.assertIn("in-situ stress: the mean is", (run / "logs" / "rock.log").read_text())
+        # Without the top nothing carries the vertical stress. It rests again.
+        self.assertEqual(json.loads((run / "summary.json").read_text())["end"]["by"], "at_rest")
+        self.assertLess(abs(probe["stress_yy"][-1]), 0.02 * 10e6)
+        self.assertGreater(probe["strain_yy"][-1], 1e-5)
+        self.assertEqual(rock["bonds"][-1], rock["bonds"][0])
+
+    def test_that_nothing_carries_is_refused(self):
+        key = "participants.rock.in_situ_stress"
+        stress = "in_situ_stress.stress = [-5e6, -10e6, 1e6]"
+        self.assert_refused(STRESSED, stress, "in_situ_stress.stress = [-5e6, -10e6]", key, "2 numbers", "xx yy xy")
+        self.assert_refused(STRESSED, stress, "in_situ_stress = { K0 = 0.5, surface = 1.0 }", key, "no gravity")
+        self.assert_refused(STRESSED, stress, "gravity = [0.0, -9.81]\nin_situ_stress.K0 = 0.5", key + ".surface")
+        self.assert_refused(STRESSED, stress, stress + "\nin_situ_stress.K0 = 0.5", key, "either stress or K0")
+        self.assert_refused(STRESSED, "bonds = { coordination_number = 5.4 }", 'bonds.kind = "none"', key, "no bonds")
+        self.assert_refused(STRESSED, "density = 2600.0", "tensile_strength = 1.0, shear_strength = 1.0, density = 2600.0",
+                            key, "the bond of particles", "its strength is 1 N")
+
+
+# Discs that fall on one another.
+GRAINS = """[case]
+name = "grains"
+dimension = 2
+end_time = 4e-3
+
+[participants.grains]
+kind = "dem"
+threads = 1
+particles.lattice = { type = "square", spacing = 1e-3, origin = [0.0, 2e-3], count = [6, 8] }
+particles.radius = 0.45e-3
+material = { density = 2600.0, normal_stiffness = 1e8, tangential_stiffness = 2e7, friction = 0.3 }
+bonds.kind = "none"
+gravity = [3.0, -9.81e2]
+
+[[participants.grains.tools]]
+name = "floor"
+shape = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+normal_stiffness = 1e8
+tangential_stiffness = 2e7
+"""
+
+
+class Grains(Bodies):
+    def test_that_do_not_touch_yet_have_a_time_step(self):
+        case = self.write_case(GRAINS)
+        plan = self.kerf("check", case)
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertRegex(plan.stdout, r"that contacts to come of particle \d+ of grains sets")
+        run = self.run_case(case)  # the step holds when they do
+        grains = rows(run, "grains")
+        self.assertGreater(max(grains["elastic_energy"]), 0.0)
+        self.assertLess(max(abs(k + e - w + f) for k, e, w, f in zip(
+            grains["kinetic_energy"], grains["elastic_energy"], grains["external_work"],
+            grains["friction_dissipation"])), 0.1 * max(grains["external_work"]))
+
+    def test_may_be_given_a_larger_step_until_they_touch(self):
+        step = json.loads((self.run_case(self.write_case(GRAINS)) / "run.json").read_text())["critical_time_step"]
+        result = self.kerf("run", self.write_case(GRAINS.replace("end_time", f"time_step = {1.2 * step}\nend_time")))
+        self.assertEqual(result.returncode, 0, result.stderr)
 
 
 if __name__ == "__main__":

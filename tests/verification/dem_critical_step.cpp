@@ -8,6 +8,7 @@ namespace kerf {
 namespace {
 
 using cases::rock;
+using cases::spacing;
 using dem::LatticeType;
 
 constexpr double ratios[] = {0.0, 0.2, 0.82, 1.0}; // k_t / k_n
@@ -147,6 +148,94 @@ TEST(CriticalStep, of_a_pair_with_dashpots_is_that_of_a_velocity_half_a_step_old
     else
       EXPECT_FALSE(apart < 1e-3);
   }
+}
+
+/// Loose grains of a lattice, as far apart as its spacing is stretched.
+template <int dim> dem::Settings<dim> grains(double stretch, double tangential_ratio) {
+  std::array<int, dim> count;
+  count.fill(dim == 2 ? 6 : 3);
+  auto settings = cases::lattice_model<dim>(dim == 2 ? LatticeType::triangular : LatticeType::fcc,
+                                            count, rock(dim, tangential_ratio));
+  for (Vec<dim>& x : settings.positions)
+    x *= stretch;
+  settings.bonds = false;
+  return settings;
+}
+
+// Grains that do not touch have no limit of their own; the one to come is that of the densest
+// lattice. Reference: row sums of that lattice pressed together by 1e-9 of the spacing.
+template <int dim> void expect_the_limit_of_the_densest_lattice() {
+  for (const double ratio : ratios) {
+    const dem::Engine<dim> apart(grains<dim>(1.2, ratio)), pressed(grains<dim>(1.0 - 1e-9, ratio));
+    EXPECT_EQ(apart.step_limit().omega2, 0.0);
+    const dem::StepLimit to_come = apart.step_limit_to_come();
+    EXPECT_EQ(to_come.limited_by.substr(0, 28), "contacts to come of particle");
+    verify({"limit of grains to come over that of the lattice they can make",
+            "row sums of the triangular and the fcc lattice", 1e-6, "the overlap of 1e-9"},
+           std::sqrt(pressed.step_limit().omega2 / to_come.omega2) - 1.0);
+    EXPECT_LT(cases::largest_eigenvalue(pressed), to_come.omega2);
+  }
+}
+TEST(CriticalStep, of_grains_to_come_is_that_of_the_densest_lattice_2d) {
+  expect_the_limit_of_the_densest_lattice<2>();
+}
+TEST(CriticalStep, of_grains_to_come_is_that_of_the_densest_lattice_3d) {
+  expect_the_limit_of_the_densest_lattice<3>();
+}
+
+// Grains that fly at one another with the step that was chosen before they touched: energy is
+// conserved but for what closing contacts miss, which falls as dt².
+template <int dim> void expect_grains_to_collide_stably(dem::NormalLaw law) {
+  auto settings = grains<dim>(1.05, 0.2);
+  settings.material.law = law;
+  settings.material.young_modulus = 1e10;
+  settings.material.poisson_ratio = 0.2;
+  cases::shake(settings, 5.0, 8);
+  settings.period.length = Vec<dim>::Zero();
+  Vec<dim> upper = Vec<dim>::Zero();
+  for (const Vec<dim>& x : settings.positions)
+    upper = upper.cwiseMax(x);
+  settings.period.length = upper + Vec<dim>::Constant(1.1 * spacing);
+  dem::Engine<dim> engine(settings);
+  engine.start(0.8 * 2.0 / std::sqrt(engine.step_limit_to_come().omega2));
+  double first = 0.0, worst = 0.0, most_elastic = 0.0;
+  for (int n = 0; n < 4000; ++n) {
+    cases::step(engine);
+    const dem::Energies e = engine.energies();
+    first = n == 0 ? e.kinetic : first;
+    worst = std::max(worst, (e.kinetic + e.elastic + e.friction_dissipation) / first - 1.0);
+    most_elastic = std::max(most_elastic, e.elastic);
+  }
+  EXPECT_GT(most_elastic, 0.05 * first); // they did collide
+  EXPECT_LT(worst, 0.1);                 // an unstable step makes it grow without end
+}
+TEST(CriticalStep, of_grains_to_come_is_stable_when_they_collide) {
+  expect_grains_to_collide_stably<2>(dem::NormalLaw::linear);
+  expect_grains_to_collide_stably<3>(dem::NormalLaw::linear);
+  expect_grains_to_collide_stably<3>(dem::NormalLaw::hertz_mindlin);
+}
+
+// Mass scaling makes heavier what would be too light when it touches; a number of grains that
+// cannot have so many neighbours counts fewer, and one alone none.
+TEST(CriticalStep, of_grains_to_come_is_what_mass_scaling_raises) {
+  auto settings = grains<2>(1.2, 0.5);
+  settings.clusters.emplace_back().ids = {0, 1};
+  const double before = 2.0 / std::sqrt(dem::Engine<2>(settings).step_limit_to_come().omega2);
+  settings.mass_scaling = dem::MassScaling{.critical_step = 3.0 * before};
+  const dem::Engine<2> scaled(settings);
+  EXPECT_NEAR(2.0 / std::sqrt(scaled.step_limit_to_come().omega2), 3.0 * before, 1e-9 * before);
+  EXPECT_NEAR(scaled.added_mass().largest_factor, 9.0, 1e-6);
+
+  dem::Settings<2> few;
+  few.positions = {{0.0, 0.0}, {2.0 * spacing, 0.0}};
+  few.radii = {0.5 * spacing, 0.5 * spacing};
+  few.material = rock(2, 0.5);
+  const double two = dem::Engine<2>(few).step_limit_to_come().omega2;
+  EXPECT_GT(two, 0.0);
+  EXPECT_LT(two, 0.2 * dem::Engine<2>(grains<2>(1.2, 0.5)).step_limit_to_come().omega2);
+  few.positions.pop_back();
+  few.radii.pop_back();
+  EXPECT_EQ(dem::Engine<2>(few).step_limit_to_come().omega2, 0.0);
 }
 
 // A prescribed component has no row; what is left is a principal part of the whole matrix, whose

@@ -1,5 +1,6 @@
 // Tables of motion, applied forces and the reactions that hold particles.
 #include "tests/cases/dem_models.hpp"
+#include "tests/verification/verification.hpp"
 
 #include <gtest/gtest.h>
 
@@ -115,7 +116,9 @@ template <int dim> void expect_reactions_and_loads_to_change_the_momentum() {
     for (std::size_t k = 0; k < 3; ++k)
       force += engine.reaction(k).force;
     largest = std::max(largest, force.norm());
-    EXPECT_LT((momentum_ahead(engine) - before - dt * force).norm(), 1e-10 * dt * largest) << n;
+    verify({"change of the momentum of a held and loaded body",
+            "Newton's second law with reactions", 1e-10, "rounding of the sum over all particles"},
+           (momentum_ahead(engine) - before - dt * force).norm() / (dt * largest));
   }
   EXPECT_GT(engine.reaction(1).force.norm(), 0.0);
 }
@@ -148,7 +151,9 @@ TEST(Loads, accelerate_each_particle_or_all_alike) {
     for (std::size_t i = 0; i < 2; ++i) {
       const double a = is_total ? F / both : F / p.mass[i];
       const double force = is_total ? F * p.mass[i] / both : F;
-      EXPECT_NEAR(p.displacement[i][1], 0.5 * a * t * t, 1e-12 * a * t * t);
+      verify({"way of particles under an applied force", "1/2 F/m t²", 1e-12,
+              "exact in central differences, to round-off"},
+             p.displacement[i][1] / (0.5 * a * t * t) - 1.0);
       work += force * 0.5 * a * before * before; // until t_99
     }
     EXPECT_NEAR(engine.energies().external_work, work, 1e-12 * work);
@@ -172,9 +177,9 @@ TEST(Loads, of_a_table_close_the_energy_books_of_a_chain) {
   for (int n = 1; n < 500; ++n) {
     cases::step(engine);
     const dem::Energies e = engine.energies();
-    EXPECT_NEAR(e.kinetic + e.elastic, at_start + e.external_work,
-                1e-11 * (e.kinetic + e.elastic + 1e-9))
-        << n;
+    verify({"energy of a chain under tables of load and motion", "the work of both", 1e-11,
+            "an identity of central differences, to round-off"},
+           (e.kinetic + e.elastic - at_start - e.external_work) / (e.kinetic + e.elastic + 1e-9));
   }
 }
 
@@ -193,7 +198,9 @@ TEST(Reactions, carry_the_loads_at_rest) {
   for (int n = 0; n < 4000; ++n)
     cases::step(engine);
   const dem::Reaction<3> wall = engine.reaction(0);
-  EXPECT_LT((wall.force + Vec<3>(8.0, 0.0, 1.0)).norm(), 1e-6);
+  verify({"force of a wall that holds a loaded body at rest", "equilibrium", 1e-6,
+          "what is left of the motion after 4000 steps"},
+         (wall.force + Vec<3>(8.0, 0.0, 1.0)).norm() / Vec<3>(8.0, 0.0, 1.0).norm());
   Vec<3> moment = Vec<3>::Zero(); // of the loads about the middle of the wall, as it bends
   for (const std::uint32_t i : engine.applied_forces().particles(0))
     moment += (engine.particles().position(i) - Vec<3>(0.0, 0.5 * spacing, 0.5 * spacing))

@@ -20,9 +20,9 @@ tolerance; a row of several comparisons has the largest error. The errors are th
 `ninja -C build/release verification` runs these tests and writes this page anew; see
 [CONTRIBUTING](../CONTRIBUTING.md#verification).
 """
-PARTS = (("Particles", r"tests/verification/dem_"), ("Elements", r"tests/verification/fem_"),
+PARTS = (("Particles", r"tests/verification/(dem_|bodies)"), ("Elements", r"tests/verification/fem_"),
          ("Couplings", r"tests/verification/coupled_|configs/"),
-         ("Other codes", r"tests/reference/"))
+         ("Restarts", r"tests/restart/"), ("Other codes", r"tests/reference/"))
 HEAD = ("verified", "source", "error", "tolerance", "reason of the tolerance", "test")
 
 
