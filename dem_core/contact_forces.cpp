@@ -81,7 +81,8 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
   const std::size_t n = particles.size();
   loads.own.resize(n + contacts.waiting_rows());
   const auto all = view_of(contacts, particles, increment, rule, loads);
-  const ContactKernel<dim> compute = kernel<dim>(contacts.law);
+  const ContactKernel<dim> linear = kernel<dim>(contacts.law);
+  const ContactKernel<dim> hertzian = kernel<dim>(ContactLaw::hertz_mindlin);
   const auto blocks = static_cast<std::int64_t>(contacts.blocks());
   std::vector<std::vector<Break>> breaks(contacts.blocks());
   const auto row = [&](std::size_t r) {
@@ -95,15 +96,23 @@ std::vector<Break> compute_contact_forces(Contacts<dim>& contacts, const Particl
       const std::size_t first = static_cast<std::size_t>(b) * particles_per_block;
       std::fill(row(first), row(std::min(n, first + particles_per_block)), Load<dim>());
       std::fill(row(contacts.waiting_offset[b]), row(contacts.waiting_offset[b + 1]), Load<dim>());
-      ContactView<dim> view = all;
-      view.begin = contacts.block_offset[b];
-      view.loose = contacts.loose_offset[b];
-      view.end = contacts.block_offset[b + 1];
-      view.breaks = &breaks[b];
-      compute(view);
-      contacts.losses[b].friction += view.friction_loss;
-      contacts.losses[b].fracture += view.fracture_loss;
-      contacts.losses[b].viscous += view.viscous_loss;
+      const auto compute = [&](ContactKernel<dim> compute_part, std::size_t begin,
+                               std::size_t loose, std::size_t end) {
+        if (begin == end)
+          return;
+        ContactView<dim> view = all;
+        view.begin = begin;
+        view.loose = loose;
+        view.end = end;
+        view.breaks = &breaks[b];
+        compute_part(view);
+        contacts.losses[b].friction += view.friction_loss;
+        contacts.losses[b].fracture += view.fracture_loss;
+        contacts.losses[b].viscous += view.viscous_loss;
+      };
+      const std::size_t hertz = contacts.hertz_offset[b];
+      compute(linear, contacts.block_offset[b], contacts.loose_offset[b], hertz);
+      compute(hertzian, hertz, hertz, contacts.block_offset[b + 1]);
     }
 #pragma omp for schedule(static)
     for (std::int64_t b = 0; b < blocks; ++b)

@@ -10,6 +10,7 @@
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
+#include "dem_core/materials.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/reactions.hpp"
 #include "dem_core/settings.hpp"
@@ -142,7 +143,7 @@ private:
   void book_step();
   void forget_interface_forces();
 
-  Material material_;
+  Materials materials_;
   Damping damping_;
   ShearIncrement shear_increment_;
   std::vector<InitialCondition<dim>> initial_;

@@ -7,6 +7,8 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_damping.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_engine.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_lattice.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_materials.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_materials_read.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_neighbours.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_order.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_packing.cpp
@@ -23,6 +25,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_mass_scaling.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_materials.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
