@@ -41,4 +41,5 @@ gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${
 kerf_python_test(case.tools verification/tools.py Tools)
 kerf_python_test(case.boundaries verification/bodies.py Boundaries)
 kerf_python_test(case.clusters verification/bodies.py Clusters)
+kerf_python_test(case.materials verification/bodies.py Materials)
 kerf_python_test(case.mass_scaling verification/bodies.py MassScaling)
