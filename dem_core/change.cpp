@@ -21,11 +21,10 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
         clusters_.weight_work(*change.gravity, 0.5) - clusters_.weight_work(gravity_, 0.5);
     gravity_ = *change.gravity;
   }
-  if (change.friction)
-    material_.friction = *change.friction;
-  check(material_);
-  if (change.friction)
-    set_constants(contacts_, particles_, material_);
+  if (change.friction) {
+    materials_.set_friction(*change.friction);
+    set_constants(contacts_, particles_, materials_);
+  }
   if (change.boundary) {
     Boundary<dim> boundary(*change.boundary, particles_.reference, step_);
     clusters_.carry_members(particles_, boundary);
@@ -37,7 +36,7 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
     tools_.at(index).redirect(motion, static_cast<double>(step_) * time_step_);
   if (change.bond_gap) {
     bonds_at_start_ +=
-        bond_pairs(contacts_, particles_, material_, *change.bond_gap, skin_.width(), period_);
+        bond_pairs(contacts_, particles_, materials_, *change.bond_gap, skin_.width(), period_);
     skin_ = Skin<dim>(skin_.width(), particles_.displacement);
     ++renewals_;
   }

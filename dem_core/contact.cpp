@@ -20,9 +20,15 @@ template <int dim> std::size_t Contacts<dim>::bonds() const noexcept {
 }
 
 template <int dim> double Contacts<dim>::memory() const {
-  constexpr std::size_t numbers = dim + 3 + rotations<dim>;
+  const std::size_t numbers = dim + 3 + (has_moments ? 2 : 1) * rotations<dim>;
+  std::size_t constants = 0;
+  for (const PerContact* constant :
+       {&normal_stiffness, &tangential_stiffness, &tensile_strength, &shear_strength, &friction,
+        &weight, &normal_viscosity, &tangential_viscosity, &bending_stiffness, &twisting_stiffness,
+        &bond_lever, &rolling_limit})
+    constants += constant->each().size();
   return static_cast<double>(size() * (numbers * sizeof(double) + 3 * sizeof(std::uint32_t) + 1) +
-                             weight.each().size() * sizeof(double) +
+                             constants * sizeof(double) +
                              waiting_rows() * 2 * sizeof(std::uint32_t));
 }
 
@@ -55,7 +61,7 @@ template <int dim>
 ContactStiffness stiffness_of(const Contacts<dim>& c, std::size_t k, double opening) {
   ContactStiffness stiffness{c.normal_stiffness[k], c.tangential_stiffness[k],
                              c.bending_stiffness[k], c.twisting_stiffness[k]};
-  if (c.law == ContactLaw::hertz_mindlin) {
+  if (c.is_hertzian(k)) {
     const double root = std::sqrt(std::max(0.0, -opening));
     stiffness.normal *= 1.5 * root; // of delta^(3/2)
     stiffness.tangential *= root;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem_core/contact_view.hpp"
+#include "dem_core/materials.hpp"
 #include "dem_core/neighbours.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
@@ -60,8 +61,8 @@ struct ContactLosses {
 
 /// Pairs of particles that touch or soon may. The normal points from `first` to `second`, the one
 /// of the larger index; tension is positive. In the list follow one another, each ascending by
-/// (first, second): of each block of particles the bonds of the start, what touched when the list
-/// was made, and what did not.
+/// (first, second): of each block of particles the bonds of the start, then linear and then
+/// Hertzian contacts, of both first what touched when the list was made and then what did not.
 template <int dim> struct Contacts {
   // One entry a contact.
   std::vector<std::uint32_t> first, second;
@@ -78,7 +79,8 @@ template <int dim> struct Contacts {
   PerContact friction;                               // mu without bond
   PerContact weight;                                 // w_c, one until blended
 
-  ContactLaw law = ContactLaw::linear;
+  ContactLaw law = ContactLaw::linear; // of bonds and linear contacts
+  bool has_moments = false;
   // Of laws with dashpots and moments, see contact_constants.hpp.
   PerContact normal_viscosity, tangential_viscosity; // c_n, c_t, N s/m
   PerContact bending_stiffness, twisting_stiffness;  // k_b, k_w, N m
@@ -90,6 +92,7 @@ template <int dim> struct Contacts {
   // writes where another one does, and the rows are added in the order of the contacts.
   std::vector<std::uint32_t> block_offset;    // [blocks + 1] contacts of each block
   std::vector<std::uint32_t> loose_offset;    // [blocks] the first that never had a bond
+  std::vector<std::uint32_t> hertz_offset;    // [blocks] the first Hertzian one; the rest is, too
   std::vector<std::uint32_t> target;          // [contacts] row of the loads of the second
   std::vector<std::uint32_t> waiting_offset;  // [blocks + 1] waiting rows that each block writes
   std::vector<std::uint32_t> incoming_offset; // [blocks + 1] of what each block receives:
@@ -108,6 +111,9 @@ template <int dim> struct Contacts {
   bool was_bonded(std::size_t k) const noexcept {
     return k < loose_offset[first[k] / particles_per_block];
   }
+  bool is_hertzian(std::size_t k) const noexcept {
+    return k >= hertz_offset[first[k] / particles_per_block];
+  }
   double memory() const; // bytes
 
   /// A contact carries force when it is bonded or pressed together.
@@ -120,7 +126,7 @@ template <int dim> struct Contacts {
 /// @throws std::invalid_argument when two centres are closer than half of the sum of the radii, or
 ///         a period is too short
 template <int dim>
-Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
+Contacts<dim> make_contacts(const Particles<dim>& particles, const Materials& materials,
                             std::optional<double> gap_tolerance, double skin,
                             const Period<dim>& period);
 
@@ -128,14 +134,17 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
 /// while they are within the skin, and keep their history.
 template <int dim>
 void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
-                    const Material& material, double skin, const Period<dim>& period);
+                    const Materials& materials, double skin, const Period<dim>& period);
 
-/// Bonds all pairs with a gap of at most gap_tolerance (r_i + r_j), in a list made again. Who
-/// touches keeps force and stress-free distance; across a gap a bond is free of stress where it is.
+/// Bonds all pairs that may with a gap of at most gap_tolerance (r_i + r_j), in a list made again.
+/// Who touches keeps its force, and if it is linear its stress-free distance; across a gap a bond
+/// is free of stress where it is. What a Hertzian contact has stored beyond the bond that takes its
+/// place is booked as loss by fracture.
 /// @return the number of new bonds
+/// @throws std::invalid_argument when no materials may be bonded
 template <int dim>
 std::size_t bond_pairs(Contacts<dim>& contacts, const Particles<dim>& particles,
-                       const Material& material, double gap_tolerance, double skin,
+                       const Materials& materials, double gap_tolerance, double skin,
                        const Period<dim>& period);
 
 /// Sets w_c = (r_j w_i + r_i w_j) / (r_i + r_j): 1 - alpha, which is linear, at the point of

@@ -81,7 +81,7 @@ template <int dim> struct Pass {
   const Particles<dim>& particles;
   Loads<dim>& loads;
   ContactView<dim> view; // of all blocks
-  ContactKernel<dim> compute_all;
+  ContactKernel<dim> linear, hertzian;
   std::vector<std::vector<Break<dim>>> breaks;
 
   typename std::vector<Load<dim>>::iterator row(std::size_t r) const {
@@ -93,22 +93,33 @@ template <int dim> struct Pass {
     const auto [begin, end] = particle_block(b, particles.size());
     std::fill(row(begin), row(end), Load<dim>());
     std::fill(row(contacts.waiting_offset[b]), row(contacts.waiting_offset[b + 1]), Load<dim>());
-    ContactView<dim> own = view;
-    own.begin = contacts.block_offset[b];
-    own.loose = contacts.loose_offset[b];
-    own.end = contacts.block_offset[b + 1];
-    own.clear_until = &contacts.clear_until[own.loose / chunk_size + b];
-    own.breaks = &breaks[b];
-    compute_all(own);
+    const std::size_t hertz = contacts.hertz_offset[b];
+    compute(linear, contacts.block_offset[b], contacts.loose_offset[b], hertz, b);
+    compute(hertzian, hertz, hertz, contacts.block_offset[b + 1], b);
     for (Break<dim>& lost : breaks[b]) {
       const Span<dim> span = span_of(contacts, particles, lost.contact);
       lost.place = particles.position(contacts.first[lost.contact]) +
                    contacts.share[lost.contact] * span.branch;
       lost.normal = span.normal();
     }
-    contacts.losses[b].friction += own.friction_loss;
-    contacts.losses[b].fracture += own.fracture_loss;
-    contacts.losses[b].viscous += own.viscous_loss;
+  }
+
+  /// Contacts begin to end, all of one law, of which those before `loose` have or had a bond.
+  void compute(ContactKernel<dim> law, std::size_t begin, std::size_t loose, std::size_t end,
+               std::size_t b) {
+    if (begin == end)
+      return;
+    ContactView<dim> part = view;
+    part.begin = begin;
+    part.loose = loose;
+    part.end = end;
+    // Chunks begin anew in each part: two more of them in a block than in the whole list.
+    part.clear_until = &contacts.clear_until[loose / chunk_size + 2 * b + (law == hertzian)];
+    part.breaks = &breaks[b];
+    law(part);
+    contacts.losses[b].friction += part.friction_loss;
+    contacts.losses[b].fracture += part.fracture_loss;
+    contacts.losses[b].viscous += part.viscous_loss;
   }
 
   /// All that a block receives comes from blocks that are not before this one.
@@ -139,13 +150,14 @@ std::vector<Break<dim>> compute_contact_forces(Contacts<dim>& contacts,
                                                const Increment<dim>& increment, ShearIncrement rule,
                                                Loads<dim>& loads, const BlockWork& complete) {
   loads.own.resize(particles.size() + contacts.waiting_rows());
-  contacts.clear_until.resize(contacts.size() / chunk_size + contacts.blocks() + 1);
+  contacts.clear_until.resize(contacts.size() / chunk_size + 2 * contacts.blocks() + 1);
   const std::size_t blocks = contacts.blocks();
   Pass<dim> pass{contacts,
                  particles,
                  loads,
                  view_of(contacts, particles, increment, rule, loads),
                  kernel<dim>(contacts.law),
+                 kernel<dim>(ContactLaw::hertz_mindlin),
                  std::vector<std::vector<Break<dim>>>(blocks)};
   const auto finish = [&](std::size_t b) {
     pass.receive(b);

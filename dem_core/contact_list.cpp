@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -27,10 +28,17 @@ struct Entry {
 
 /// The contacts that a block is to have, in the order of the list.
 struct BlockList {
-  std::vector<Entry> bonds, touching, apart;
+  struct Loose {
+    std::vector<Entry> touching, apart;
+  };
+  std::vector<Entry> bonds;
+  Loose linear, hertzian;
   std::uint32_t waiting = 0; // of them, with a second particle in another block
 
-  std::size_t size() const { return bonds.size() + touching.size() + apart.size(); }
+  Loose& loose(const Mixture& mixture) { return mixture.is_hertzian() ? hertzian : linear; }
+  std::array<const std::vector<Entry>*, 5> parts() const {
+    return {&bonds, &linear.touching, &linear.apart, &hertzian.touching, &hertzian.apart};
+  }
 };
 
 std::size_t block_of(std::uint32_t particle) {
@@ -66,7 +74,7 @@ std::vector<BlockList> make_lists(std::size_t particles, std::span<const Pair> p
 #pragma omp parallel for schedule(static)
   for (std::int64_t b = 0; b < blocks; ++b) {
     fill(b, lists[b], std::span(from(b), from(b + 1)));
-    for (const auto* part : {&lists[b].bonds, &lists[b].touching, &lists[b].apart})
+    for (const auto* part : lists[b].parts())
       for (const Entry& entry : *part)
         lists[b].waiting += block_of(entry.pair.second) != static_cast<std::size_t>(b);
   }
@@ -83,7 +91,7 @@ template <int dim> void resize(Contacts<dim>& c, std::size_t count) {
   c.bonded.resize(count);
   c.normal_force.resize(count);
   c.shear_force.resize(count);
-  if (c.law != ContactLaw::linear)
+  if (c.has_moments)
     c.moment.resize(count);
 }
 
@@ -99,7 +107,7 @@ void set_new(Contacts<dim>& c, std::size_t k, Pair pair, const Particles<dim>& p
   c.bonded[k] = 0;
   c.normal_force[k] = 0.0;
   c.shear_force.set(k, Rot<dim>::Zero());
-  if (c.law != ContactLaw::linear)
+  if (c.has_moments)
     c.moment.set(k, Rot<dim>::Zero());
 }
 
@@ -112,7 +120,7 @@ void set_copy(Contacts<dim>& c, std::size_t k, const Contacts<dim>& from, std::s
   c.bonded[k] = from.bonded[old];
   c.normal_force[k] = from.normal_force[old];
   c.shear_force.set(k, from.shear_force[old]);
-  if (c.law != ContactLaw::linear)
+  if (c.has_moments)
     c.moment.set(k, from.moment[old]);
 }
 
@@ -121,11 +129,15 @@ template <int dim>
 void set_blocks(Contacts<dim>& c, std::span<const BlockList> lists, std::size_t particles) {
   c.block_offset.assign(1, 0);
   c.loose_offset.clear();
+  c.hertz_offset.clear();
   c.waiting_offset.assign(1, static_cast<std::uint32_t>(particles));
   for (const BlockList& list : lists) {
-    const std::uint32_t begin = c.block_offset.back();
-    c.loose_offset.push_back(begin + static_cast<std::uint32_t>(list.bonds.size()));
-    c.block_offset.push_back(begin + static_cast<std::uint32_t>(list.size()));
+    std::size_t end = c.block_offset.back();
+    c.loose_offset.push_back(static_cast<std::uint32_t>(end += list.bonds.size()));
+    end += list.linear.touching.size() + list.linear.apart.size();
+    c.hertz_offset.push_back(static_cast<std::uint32_t>(end));
+    end += list.hertzian.touching.size() + list.hertzian.apart.size();
+    c.block_offset.push_back(static_cast<std::uint32_t>(end));
     c.waiting_offset.push_back(c.waiting_offset.back() + list.waiting);
   }
   c.losses.resize(lists.size());
@@ -158,7 +170,7 @@ void fill(Contacts<dim>& c, std::span<const BlockList> lists, std::size_t partic
 #pragma omp parallel for schedule(static)
   for (std::int64_t b = 0; b < blocks; ++b) {
     std::uint32_t k = c.block_offset[b], row = c.waiting_offset[b];
-    for (const auto* part : {&lists[b].bonds, &lists[b].touching, &lists[b].apart})
+    for (const auto* part : lists[b].parts())
       for (const Entry& entry : *part) {
         const auto [i, j] = entry.pair;
         c.first[k] = i;
@@ -176,18 +188,20 @@ template <int dim> std::vector<Entry> ascending(const Contacts<dim>& c, std::siz
   std::vector<Entry> entries(end - begin);
   for (std::uint32_t k = begin; k < end; ++k)
     entries[k - begin] = {{c.first[k], c.second[k]}, k};
-  // Three ascending parts: what was bonded, what touched and what was apart.
   const auto less = [](const Entry& a, const Entry& b) { return a.pair < b.pair; };
-  const auto loose = entries.begin() + (c.loose_offset[block] - begin);
-  std::inplace_merge(loose, std::is_sorted_until(loose, entries.end(), less), entries.end(), less);
-  std::inplace_merge(entries.begin(), loose, entries.end(), less);
+  const auto all = entries.end(); // the parts of the list ascend
+  for (auto part = std::is_sorted_until(entries.begin(), all, less); part != all;) {
+    const auto next = std::is_sorted_until(part, all, less);
+    std::inplace_merge(entries.begin(), part, next, less);
+    part = next;
+  }
   return entries;
 }
 
 } // namespace
 
 template <int dim>
-Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& material,
+Contacts<dim> make_contacts(const Particles<dim>& particles, const Materials& materials,
                             std::optional<double> gap_tolerance, double skin,
                             const Period<dim>& period) {
   const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
@@ -213,14 +227,17 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
                      const double contact_distance =
                          particles.radius[pair.first] + particles.radius[pair.second];
                      const double gap = distance_of(pair) - contact_distance;
-                     if (gap_tolerance && gap <= *gap_tolerance * contact_distance)
+                     const Mixture& mixture = materials.between(particles, pair.first, pair.second);
+                     BlockList::Loose& loose = list.loose(mixture);
+                     if (gap_tolerance && mixture.bonds && gap <= *gap_tolerance * contact_distance)
                        list.bonds.push_back({pair});
                      else if (gap <= skin)
-                       (gap < 0.0 ? list.touching : list.apart).push_back({pair});
+                       (gap < 0.0 ? loose.touching : loose.apart).push_back({pair});
                    }
                  });
   Contacts<dim> c;
-  c.law = law_of(material);
+  c.law = materials.linear_law();
+  c.has_moments = c.law != ContactLaw::linear || materials.has_hertzian();
   fill(c, lists, particles.size(),
        [&](std::size_t k, const Entry& entry) { set_new(c, k, entry.pair, particles, period); });
   for (std::size_t k = 0; k < c.size(); ++k)
@@ -229,21 +246,24 @@ Contacts<dim> make_contacts(const Particles<dim>& particles, const Material& mat
       c.rest_length[k] = c.reference_branch[k].norm();
     }
   c.weight.set_all(1.0);
-  set_constants(c, particles, material);
+  set_constants(c, particles, materials);
   return c;
 }
 
 template <int dim>
 void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
-                    const Material& material, double skin, const Period<dim>& period) {
+                    const Materials& materials, double skin, const Period<dim>& period) {
   const std::vector<Pair> pairs = pairs_within(particles, skin, period);
   const auto lists = make_lists(
       particles.size(), pairs,
       [&](std::size_t block, BlockList& list, std::span<const Pair> of_block) {
+        const auto loose = [&](Pair of) -> BlockList::Loose& {
+          return list.loose(materials.between(particles, of.first, of.second));
+        };
         auto pair = of_block.begin();
         for (const Entry& entry : ascending(contacts, block)) {
           for (; pair != of_block.end() && *pair < entry.pair; ++pair)
-            list.apart.push_back({*pair});
+            loose(*pair).apart.push_back({*pair});
           const bool is_near = pair != of_block.end() && *pair == entry.pair;
           if (is_near)
             ++pair;
@@ -251,13 +271,15 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
           if (contacts.was_bonded(k) || contacts.bonded[k])
             list.bonds.push_back(entry);
           else if (is_near)
-            (contacts.normal_force[k] != 0.0 ? list.touching : list.apart).push_back(entry);
+            (contacts.normal_force[k] != 0.0 ? loose(entry.pair).touching : loose(entry.pair).apart)
+                .push_back(entry);
         }
         for (; pair != of_block.end(); ++pair)
-          list.apart.push_back({*pair});
+          loose(*pair).apart.push_back({*pair});
       });
   Contacts<dim> renewed;
   renewed.law = contacts.law;
+  renewed.has_moments = contacts.has_moments;
   fill(renewed, lists, particles.size(), [&](std::size_t k, const Entry& entry) {
     if (entry.old == none)
       set_new(renewed, k, entry.pair, particles, period);
@@ -265,49 +287,20 @@ void renew_contacts(Contacts<dim>& contacts, const Particles<dim>& particles,
       set_copy(renewed, k, contacts, entry.old);
   });
   renewed.losses = contacts.losses;
-  set_constants(renewed, particles, material);
+  set_constants(renewed, particles, materials);
   renewed.weight.set_all(1.0);
   if (!contacts.weight.is_uniform())
     blend(renewed, particles);
   contacts = std::move(renewed);
 }
 
-template <int dim>
-std::size_t bond_pairs(Contacts<dim>& contacts, const Particles<dim>& particles,
-                       const Material& material, double gap_tolerance, double skin,
-                       const Period<dim>& period) {
-  if (contacts.law == ContactLaw::hertz_mindlin)
-    throw std::invalid_argument("hertz_mindlin has no bonds");
-  const double largest = *std::max_element(particles.radius.begin(), particles.radius.end());
-  const double reach = std::max(skin, gap_tolerance * 2.0 * largest);
-  renew_contacts(contacts, particles, material, reach, period);
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const double touching =
-        particles.radius[contacts.first[k]] + particles.radius[contacts.second[k]];
-    const Span<dim> span = span_of(contacts, particles, k);
-    if (contacts.bonded[k] || span.length - touching > gap_tolerance * touching)
-      continue;
-    contacts.bonded[k] = 1;
-    if (span.opening > 0.0)
-      contacts.rest_length[k] = span.length;
-    ++count;
-  }
-  renew_contacts(contacts, particles, material, skin, period); // to their place among the bonds
-  return count;
-}
-
-template Contacts<2> make_contacts<2>(const Particles<2>&, const Material&, std::optional<double>,
+template Contacts<2> make_contacts<2>(const Particles<2>&, const Materials&, std::optional<double>,
                                       double, const Period<2>&);
-template Contacts<3> make_contacts<3>(const Particles<3>&, const Material&, std::optional<double>,
+template Contacts<3> make_contacts<3>(const Particles<3>&, const Materials&, std::optional<double>,
                                       double, const Period<3>&);
-template void renew_contacts<2>(Contacts<2>&, const Particles<2>&, const Material&, double,
+template void renew_contacts<2>(Contacts<2>&, const Particles<2>&, const Materials&, double,
                                 const Period<2>&);
-template void renew_contacts<3>(Contacts<3>&, const Particles<3>&, const Material&, double,
+template void renew_contacts<3>(Contacts<3>&, const Particles<3>&, const Materials&, double,
                                 const Period<3>&);
-template std::size_t bond_pairs<2>(Contacts<2>&, const Particles<2>&, const Material&, double,
-                                   double, const Period<2>&);
-template std::size_t bond_pairs<3>(Contacts<3>&, const Particles<3>&, const Material&, double,
-                                   double, const Period<3>&);
 
 } // namespace kerf::dem

@@ -58,16 +58,50 @@ double row_sum_among_neighbours(const ContactStiffness& k, double mass, double r
 
 /// At an overlap of a thousandth of the smaller radius, where it matters.
 ContactStiffness at_work(const PairConstants& pair, double smaller) {
-  const double root = pair.law == ContactLaw::hertz_mindlin ? std::sqrt(1e-3 * smaller) : 1.0;
-  const double of_force = pair.law == ContactLaw::hertz_mindlin ? 1.5 : 1.0;
+  const double root = pair.is_hertzian ? std::sqrt(1e-3 * smaller) : 1.0;
+  const double of_force = pair.is_hertzian ? 1.5 : 1.0;
   return {of_force * root * pair.normal_stiffness, root * pair.tangential_stiffness,
           root * pair.bending_stiffness, 0.0};
+}
+
+/// Of a particle with one of the largest radius and any material.
+template <int dim>
+ContactStiffness stiffest(const Materials& materials, const Particles<dim>& p, std::size_t i,
+                          double largest) {
+  const std::size_t own = materials.is_one() ? 0 : p.material[i];
+  ContactStiffness stiffest;
+  for (std::size_t other = 0; other < materials.all().size(); ++other) {
+    const ContactStiffness one = at_work(
+        pair_constants<dim>(materials.mixture(own, other),
+                            {p.density[i], materials.all()[other].density}, p.radius[i], largest),
+        p.radius[i]);
+    stiffest.normal = std::max(stiffest.normal, one.normal);
+    stiffest.tangential = std::max(stiffest.tangential, one.tangential);
+    stiffest.bending = std::max(stiffest.bending, one.bending);
+  }
+  return stiffest;
+}
+
+/// The longest ratio of viscosity to stiffness among the largest particles, s.
+template <int dim> double dashpot_time_to_come(const Materials& materials, double largest) {
+  double longest = 0.0;
+  for (const Mixture& mixture : materials.mixtures()) {
+    const PairConstants pair = pair_constants<dim>(
+        mixture, {mixture.first.density, mixture.second.density}, largest, largest);
+    const ContactStiffness k = at_work(pair, largest);
+    const double stiffens = pair.is_hertzian ? std::pow(1e-3 * largest, 0.25) : 1.0;
+    for (const auto& [viscosity, stiffness] : {std::pair{pair.normal_viscosity, k.normal},
+                                               std::pair{pair.tangential_viscosity, k.tangential}})
+      if (stiffness > 0.0)
+        longest = std::max(longest, stiffens * viscosity / stiffness);
+  }
+  return longest;
 }
 
 } // namespace
 
 template <int dim>
-ContactsToCome contacts_to_come(const Material& material, const Contacts<dim>& c,
+ContactsToCome contacts_to_come(const Materials& materials, const Contacts<dim>& c,
                                 const Particles<dim>& p, const Boundary<dim>& boundary,
                                 const Clusters<dim>& clusters) {
   const double largest = *std::max_element(p.radius.begin(), p.radius.end());
@@ -92,7 +126,7 @@ ContactsToCome contacts_to_come(const Material& material, const Contacts<dim>& c
       is_held = is_held && boundary.prescribes(i, a);
     const double r = p.radius[i];
     const double weight = p.weight.empty() ? 1.0 : bounded_share(p.weight[i]);
-    ContactStiffness k = at_work(pair_constants<dim>(material, p.density, r, largest), r);
+    ContactStiffness k = stiffest(materials, p, i, largest);
     k.normal += k.bending / (r * r); // against turns as stiff as that, at most
     k.tangential += k.bending / (r * r);
     result.particles[i] =
@@ -106,35 +140,27 @@ ContactsToCome contacts_to_come(const Material& material, const Contacts<dim>& c
     const auto bonded = [&](std::uint32_t i) { return is_bonded[i] != 0; };
     if (!cluster.is_free || std::ranges::any_of(cluster.members, bonded))
       continue;
-    double stiffest = 0.0;
+    double stiffness = 0.0;
     for (const std::uint32_t i : cluster.members) {
-      const ContactStiffness one =
-          at_work(pair_constants<dim>(material, p.density, p.radius[i], largest), p.radius[i]);
-      stiffest = std::max({stiffest, one.normal, one.tangential});
+      const ContactStiffness one = stiffest(materials, p, i, largest);
+      stiffness = std::max({stiffness, one.normal, one.tangential});
     }
     const double mass =
         std::min(cluster.mass, cluster.least_inertia / (cluster.extent * cluster.extent));
-    result.clusters[k] = count(p.size() - cluster.members.size()) *
-                         row_sum_among_neighbours<dim>({stiffest, stiffest, 0.0, 0.0}, mass, mass);
+    result.clusters[k] =
+        count(p.size() - cluster.members.size()) *
+        row_sum_among_neighbours<dim>({stiffness, stiffness, 0.0, 0.0}, mass, mass);
     is_any = is_any || result.clusters[k] > 0.0;
   }
-  if (is_any) {
-    const PairConstants pair = pair_constants<dim>(material, p.density, largest, largest);
-    const ContactStiffness k = at_work(pair, largest);
-    const double stiffens =
-        pair.law == ContactLaw::hertz_mindlin ? std::pow(1e-3 * largest, 0.25) : 1.0;
-    for (const auto& [viscosity, stiffness] : {std::pair{pair.normal_viscosity, k.normal},
-                                               std::pair{pair.tangential_viscosity, k.tangential}})
-      if (stiffness > 0.0)
-        result.dashpot_time = std::max(result.dashpot_time, stiffens * viscosity / stiffness);
-  }
+  if (is_any)
+    result.dashpot_time = dashpot_time_to_come<dim>(materials, largest);
   return result;
 }
 
-template ContactsToCome contacts_to_come<2>(const Material&, const Contacts<2>&,
+template ContactsToCome contacts_to_come<2>(const Materials&, const Contacts<2>&,
                                             const Particles<2>&, const Boundary<2>&,
                                             const Clusters<2>&);
-template ContactsToCome contacts_to_come<3>(const Material&, const Contacts<3>&,
+template ContactsToCome contacts_to_come<3>(const Materials&, const Contacts<3>&,
                                             const Particles<3>&, const Boundary<3>&,
                                             const Clusters<3>&);
 

@@ -4,6 +4,7 @@
 #include "dem_core/boundary.hpp"
 #include "dem_core/clusters.hpp"
 #include "dem_core/contact.hpp"
+#include "dem_core/materials.hpp"
 
 #include <vector>
 
@@ -23,7 +24,7 @@ struct ContactsToCome {
 /// contacts at its farthest point. It is an estimate: a particle can have more contacts with much
 /// smaller ones, and be pressed harder.
 template <int dim>
-ContactsToCome contacts_to_come(const Material& material, const Contacts<dim>& contacts,
+ContactsToCome contacts_to_come(const Materials& materials, const Contacts<dim>& contacts,
                                 const Particles<dim>& particles, const Boundary<dim>& boundary,
                                 const Clusters<dim>& clusters);
 

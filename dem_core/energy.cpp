@@ -60,7 +60,7 @@ template <int dim> double elastic_energy(const Contacts<dim>& c, const Particles
   return ordered_sum(c.size(), [&](std::size_t k) {
     const double F_n = std::abs(c.normal_force[k]), F_T2 = c.shear_force[k].squaredNorm();
     double energy = 0.0, opening = 0.0;
-    if (c.law == ContactLaw::hertz_mindlin) { // F_n = k_n delta^(3/2) has the energy 2/5 F_n delta
+    if (c.is_hertzian(k)) { // F_n = k_n delta^(3/2) has the energy 2/5 F_n delta
       opening = -std::pow(F_n / c.normal_stiffness[k], 2.0 / 3.0);
       energy = -0.4 * F_n * opening;
     } else {
@@ -68,7 +68,7 @@ template <int dim> double elastic_energy(const Contacts<dim>& c, const Particles
     }
     const ContactStiffness stiffness = stiffness_of(c, k, opening);
     energy += half_square_over(F_T2, stiffness.tangential);
-    if (c.law != ContactLaw::linear)
+    if (c.has_moments)
       energy += energy_of_moment(c, particles, k, stiffness);
     return c.weight[k] * energy;
   });

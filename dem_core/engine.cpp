@@ -30,26 +30,33 @@ double skin_width(std::span<const double> radius) {
          static_cast<double>(radius.size());
 }
 
+template <int dim>
+Particles<dim> make_bodies(const Settings<dim>& settings, const Materials& materials) {
+  auto particles = make_particles<dim>(settings.positions, settings.radii,
+                                       settings.material.density, settings.ids);
+  set_materials(particles, settings.material_of, materials);
+  return particles;
+}
+
 } // namespace
 
 template <int dim>
 Engine<dim>::Engine(const Settings<dim>& settings)
-    : material_(settings.material), damping_(settings.damping),
-      shear_increment_(settings.shear_increment), initial_(settings.initial),
-      period_(settings.period),
-      particles_(make_particles<dim>(settings.positions, settings.radii, settings.material.density,
-                                     settings.ids)),
+    : materials_(settings.material, settings.other_materials, settings.pairs),
+      damping_(settings.damping), shear_increment_(settings.shear_increment),
+      initial_(settings.initial), period_(settings.period),
+      particles_(make_bodies(settings, materials_)),
       boundary_(settings.boundary, particles_.reference), reactions_(settings.boundary.size()),
       applied_forces_(settings.applied_forces, particles_), mass_scaling_(settings.mass_scaling),
       gravity_(settings.gravity), start_rotation_(particles_.size()) {
-  check(material_);
   clusters_ = Clusters<dim>(settings.clusters, particles_, boundary_);
   if (!gravity_.allFinite())
     throw std::invalid_argument("gravity must be finite");
   const double width = skin_width(particles_.radius);
-  contacts_ = make_contacts(particles_, material_,
-                            settings.bonds ? std::optional(settings.gap_tolerance) : std::nullopt,
-                            width, period_);
+  const bool has_bonds = settings.bonds && materials_.may_bond();
+  contacts_ = make_contacts(particles_, materials_,
+                            has_bonds ? std::optional(settings.gap_tolerance) : std::nullopt, width,
+                            period_);
   skin_ = Skin<dim>(width, particles_.displacement); // before the initial displacement
   bonds_at_start_ = contacts_.bonds();
   add_tools(settings);
@@ -99,7 +106,7 @@ template <int dim> std::vector<double> Engine<dim>::stiffness() const {
         ++count[i];
       }
   for (std::size_t i = 0; i < size(); ++i)
-    sum[i] = count[i] > 0 ? sum[i] / count[i] : material_.normal_stiffness;
+    sum[i] = count[i] > 0 ? sum[i] / count[i] : materials_.of(particles_, i).normal_stiffness;
   return sum;
 }
 
@@ -152,7 +159,7 @@ template <int dim> StepLimit Engine<dim>::step_limit() const {
 
 template <int dim> StepLimit Engine<dim>::step_limit_to_come() const {
   const ContactsToCome to_come =
-      contacts_to_come(material_, contacts_, particles_, boundary_, clusters_);
+      contacts_to_come(materials_, contacts_, particles_, boundary_, clusters_);
   const std::vector<double> walls = wall_sums<dim>(tools_, wall_contacts_, particles_, boundary_);
   StepLimit limit;
   for (std::size_t i = 0; i < size(); ++i)
@@ -220,7 +227,7 @@ template <int dim> void Engine<dim>::compute_own_forces() {
 template <int dim> double Engine<dim>::compute_forces(bool moves) {
   forget_interface_forces();
   if (skin_.is_worn(particles_.displacement)) {
-    renew_contacts(contacts_, particles_, material_, skin_.width(), period_);
+    renew_contacts(contacts_, particles_, materials_, skin_.width(), period_);
     skin_ = Skin<dim>(skin_.width(), particles_.displacement);
     ++renewals_;
   }

@@ -11,6 +11,7 @@
 #include "dem_core/crack.hpp"
 #include "dem_core/energy.hpp"
 #include "dem_core/in_situ_stress.hpp"
+#include "dem_core/materials.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/reactions.hpp"
 #include "dem_core/settings.hpp"
@@ -156,7 +157,7 @@ private:
   double compute_forces(bool moves);
   double move();
 
-  Material material_;
+  Materials materials_;
   Damping damping_;
   ShearIncrement shear_increment_;
   std::vector<InitialCondition<dim>> initial_;

@@ -27,7 +27,7 @@ template <int dim> void Engine<dim>::scale_mass() {
   clusters_.scale_mass(std::vector<double>(clusters_.size(), 1.0)); // as they were
   if (const double step = mass_scaling_->critical_step; step > 0.0) {
     const ContactsToCome to_come =
-        contacts_to_come(material_, contacts_, particles_, boundary_, clusters_);
+        contacts_to_come(materials_, contacts_, particles_, boundary_, clusters_);
     const double time = std::max(dashpot_time(contacts_, particles_), to_come.dashpot_time);
     const double wished = 1.0 / (0.25 * step * step + 0.5 * time * step); // see with_dashpots()
     const std::vector<double> walls = wall_sums<dim>(tools_, wall_contacts_, particles_, boundary_);

@@ -37,7 +37,7 @@ Particles<dim> make_particles(std::span<const Vec<dim>> positions, std::span<con
 
   particles.reference.assign(positions.begin(), positions.end());
   particles.radius.assign(radii.begin(), radii.end());
-  particles.density = density;
+  particles.density.assign(n, density);
   particles.mass.resize(n);
   particles.inertia.resize(n);
   particles.displacement.assign(n, Vec<dim>::Zero());
@@ -59,7 +59,7 @@ template <int dim> void blend(Particles<dim>& particles, std::span<const double>
           fmt::format("weight {} of particle {} must not be negative", w, particles.ids[i]));
     const double r = particles.radius[i];
     particles.mass[i] =
-        bounded_share(w) * volume_of_radius<dim>(r) * particles.density; // eqs 48-49
+        bounded_share(w) * volume_of_radius<dim>(r) * particles.density[i]; // eqs 48-49
     particles.inertia[i] = (dim == 2 ? 0.5 : 0.4) * particles.mass[i] * r * r;
   }
 }

@@ -37,10 +37,11 @@ template <> struct alignas(32) Aligned<Vec<3>> : Vec<3> {
 /// All arrays have one entry a particle. Positions are kept as reference + displacement, so that
 /// small displacements lose no digits; they are never wrapped into a period.
 template <int dim> struct Particles {
-  std::vector<Vec<dim>> reference; // m
-  std::vector<double> radius;      // m
-  double density = 0.0;            // kg/m³
-  std::vector<std::uint32_t> ids;  // what the user calls them
+  std::vector<Vec<dim>> reference;    // m
+  std::vector<double> radius;         // m
+  std::vector<double> density;        // kg/m³
+  std::vector<std::uint8_t> material; // of each, see Materials; empty: there is only one
+  std::vector<std::uint32_t> ids;     // what the user calls them
 
   std::vector<std::uint32_t> cluster; // rigid body of each, from 1; 0: none; empty: there are none
 

@@ -16,11 +16,11 @@ namespace kerf::dem {
 
 enum class NormalLaw {
   linear,        // springs of constant stiffness
-  hertz_mindlin, // elastic spheres; no bonds
+  hertz_mindlin, // elastic spheres; bonds are linear all the same
 };
 
-/// Constants of every contact; in 2D all of them are per metre of thickness. What follows from them
-/// is in contact_constants.hpp.
+/// Constants of particles of one kind and of the contacts among them; in 2D all of them are per
+/// metre of thickness. What follows from them is in contact_constants.hpp.
 struct Material {
   static constexpr double unbreakable = std::numeric_limits<double>::infinity();
 
@@ -28,7 +28,8 @@ struct Material {
   NormalLaw law = NormalLaw::linear;
   double friction = 0.0; // mu of contacts without bond
 
-  // Linear springs: the same for all contacts, or from a modulus and the sizes.
+  // Linear springs, which bonds have by any law: the same for all contacts, or from a modulus and
+  // the sizes.
   double normal_stiffness = 0.0;     // k_n, N/m
   double tangential_stiffness = 0.0; // k_t, N/m
   double contact_modulus = 0.0;      // E_c, Pa; 0: the stiffness is given
@@ -47,6 +48,17 @@ struct Material {
 
   double restitution = 1.0;      // of a collision; 1: no dashpots
   double rolling_friction = 0.0; // mu_r
+
+  bool has_springs() const { return normal_stiffness > 0.0 || contact_modulus > 0.0; }
+  bool operator==(const Material&) const = default;
+};
+
+/// What counts for contacts between two materials: both, as if they were of this kind. Their
+/// densities do not count.
+struct MaterialPair {
+  std::uint8_t first = 0, second = 0; // 0: Settings::material, k: other_materials[k - 1]
+  Material of_first, of_second;
+  bool bonds = true; // may there be any
 };
 
 /// Where the tangential displacement of a step is measured.
@@ -165,11 +177,14 @@ template <int dim> struct InSituStress {
 };
 
 template <int dim> struct Settings {
-  std::vector<Vec<dim>> positions; // [n] centres in the reference configuration, m
-  std::vector<double> radii;       // [n] m
-  std::vector<std::uint32_t> ids;  // [n] what the user calls them; empty: their index
-  Material material;
-  bool bonds = true;           // between neighbours at the start
+  std::vector<Vec<dim>> positions;       // [n] centres in the reference configuration, m
+  std::vector<double> radii;             // [n] m
+  std::vector<std::uint32_t> ids;        // [n] what the user calls them; empty: their index
+  Material material;                     // of all particles, but for
+  std::vector<Material> other_materials; // at most 255 of them
+  std::vector<std::uint8_t> material_of; // [n] 0: material, k: other_materials[k - 1]; empty: all 0
+  std::vector<MaterialPair> pairs;       // other pairs are mixed, see materials.hpp
+  bool bonds = true;                     // between neighbours at the start
   double gap_tolerance = 1e-3; // bonded when distance - (r_i + r_j) <= gap_tolerance (r_i + r_j)
   ShearIncrement shear_increment = ShearIncrement::midpoint;
   Damping damping;

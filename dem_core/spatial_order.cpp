@@ -62,6 +62,8 @@ template <int dim> void put_in_spatial_order(Settings<dim>& settings) {
   };
   settings.positions = arranged(settings.positions);
   settings.radii = arranged(settings.radii);
+  if (!settings.material_of.empty())
+    settings.material_of = arranged(settings.material_of);
   settings.ids = settings.ids.empty() ? order : arranged(settings.ids);
 }
 

@@ -23,6 +23,8 @@ template <int dim> std::uint64_t fingerprint(const Engine<dim>& engine) {
       add(x);
     add(p.radius[i]);
     add(p.ids[i]);
+    if (!p.material.empty())
+      add(p.material[i]);
   }
   add(static_cast<double>(engine.tools().size()));
   return sum;

@@ -33,8 +33,8 @@ namespace kerf::dem {
 /// A friend of every part.
 struct StateParts {
   template <int dim, class Visit> static void of(Particles<dim>& particles, Visit& visit) {
-    auto& [reference, radius, density, ids, cluster, weight, mass, true_mass, inertia, displacement,
-           velocity, angular_velocity] = particles;
+    auto& [reference, radius, density, material, ids, cluster, weight, mass, true_mass, inertia,
+           displacement, velocity, angular_velocity] = particles;
     visit("displacement", displacement);
     visit("velocity", velocity);
     visit("angular_velocity", angular_velocity);
@@ -76,10 +76,10 @@ struct StateParts {
   template <int dim, class Visit> static void of(Contacts<dim>& contacts, Visit& visit) {
     auto& [first, second, reference_branch, rest_length, share, bonded, normal_force, shear_force,
            normal_stiffness, tangential_stiffness, tensile_strength, shear_strength, friction,
-           weight, law, normal_viscosity, tangential_viscosity, bending_stiffness,
+           weight, law, has_moments, normal_viscosity, tangential_viscosity, bending_stiffness,
            twisting_stiffness, bond_lever, rolling_limit, moment, block_offset, loose_offset,
-           target, waiting_offset, incoming_offset, incoming_row, incoming_second, losses,
-           clear_until] = contacts;
+           hertz_offset, target, waiting_offset, incoming_offset, incoming_row, incoming_second,
+           losses, clear_until] = contacts;
     visit("first", first);
     visit("second", second);
     visit("reference_branch", reference_branch);
@@ -95,6 +95,7 @@ struct StateParts {
     visit("friction", friction);
     visit("weight", weight);
     visit("law", law);
+    visit("has_moments", has_moments);
     visit("normal_viscosity", normal_viscosity);
     visit("tangential_viscosity", tangential_viscosity);
     visit("bending_stiffness", bending_stiffness);
@@ -104,6 +105,7 @@ struct StateParts {
     visit("moment", moment);
     visit("block_offset", block_offset);
     visit("loose_offset", loose_offset);
+    visit("hertz_offset", hertz_offset);
     visit("target", target);
     visit("waiting_offset", waiting_offset);
     visit("incoming_offset", incoming_offset);
@@ -262,7 +264,7 @@ struct StateParts {
   template <class Whole, class Visit>
   requires requires(Whole& whole) { whole.unbalanced_force(); }
   static void of(Whole& whole, Visit& visit) {
-    auto& [material, damping, shear_increment, initial, period, particles, boundary, clusters,
+    auto& [materials, damping, shear_increment, initial, period, particles, boundary, clusters,
            reactions, applied_forces, contacts, skin, tool_names, tools, wall_contacts,
            in_situ_stress, mass_scaling, gravity, weight_work_at_start, start_rotation,
            bonds_at_start, renewals, travelled, time_step, step, forces_are_current, loads, touched,

@@ -54,8 +54,7 @@ template <int dim> double dashpot_time(const Contacts<dim>& c, const Particles<d
     if (!c.carries(k, opening))
       continue;
     const ContactStiffness spring = stiffness_of(c, k, opening);
-    const double stiffens =
-        c.law == ContactLaw::hertz_mindlin ? std::pow(std::max(0.0, -opening), 0.25) : 1.0;
+    const double stiffens = c.is_hertzian(k) ? std::pow(std::max(0.0, -opening), 0.25) : 1.0;
     if (spring.normal > 0.0)
       longest = std::max(longest, stiffens * c.normal_viscosity[k] / spring.normal);
     if (spring.tangential > 0.0)

@@ -45,11 +45,11 @@ private:
     if (participant["kind"] == "dem") {
       check_particles(key + ".particles", participant["particles"]);
       check_bonds(key + ".bonds", participant["bonds"]);
-      const json& material = participant["material"];
-      check_keys_of(key + ".material", material, "law", material["law"],
-                    {{"linear", {"normal_stiffness", "tangential_stiffness"}},
-                     {"linear_by_size", {"contact_modulus", "stiffness_ratio"}},
-                     {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}});
+      check_material(key + ".material", participant["material"], participant["materials"]);
+      for (std::size_t k = 0; k < participant["materials"].size(); ++k)
+        check_material(fmt::format("{}.materials[{}]", key, k), participant["materials"][k],
+                       participant["materials"]);
+      check_materials(key, participant, problems_);
       check_probes(key, participant["probes"]);
       check_tools(key, participant["tools"]);
       check_loads(key + ".loads", participant["loads"]);
@@ -65,6 +65,19 @@ private:
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
     for (std::size_t k = 0; k < participant["initial"].size(); ++k)
       check_initial(fmt::format("{}.initial[{}]", key, k), participant["initial"][k]);
+  }
+
+  /// Springs of Hertzian particles are those of their bonds; moduli of others are for their pairs.
+  void check_material(const string& key, const json& material, const json& others) {
+    std::map<string, std::set<string>> keys = {
+        {"linear", {"normal_stiffness", "tangential_stiffness"}},
+        {"linear_by_size", {"contact_modulus", "stiffness_ratio"}},
+        {"hertz_mindlin", {"young_modulus", "poisson_ratio"}}};
+    if (material["law"] == "hertz_mindlin")
+      keys = {*keys.find("hertz_mindlin")};
+    else if (!others.empty())
+      keys.erase("hertz_mindlin");
+    check_keys_of(key, material, "law", material["law"], keys);
   }
 
   void check_particles(const string& key, const json& particles) {

@@ -20,6 +20,11 @@ nlohmann::json read_settings(const Document& document, const std::filesystem::pa
 /// Also fills in the kinds of measures that are their names.
 void check_settings(nlohmann::json& settings, const Document& document, Problems& problems);
 
+/// The part of check_settings() about the materials of one participant and pairs of them.
+/// @param participant  "participants.rock"
+void check_materials(const std::string& participant, const nlohmann::json& table,
+                     Problems& problems);
+
 /// The part of check_settings() about stages, stop conditions and the end of the run.
 void check_stages(const nlohmann::json& settings, Problems& problems);
 

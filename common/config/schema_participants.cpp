@@ -56,45 +56,6 @@ std::vector<Key> particle_set_keys() {
 std::vector<Key> model_of_particles() {
   using enum Type;
   return {
-      {"participants.*.material", "dem", table, "", tables, anything, "material",
-       "the particles and their contacts"},
-      {"participants.*.material.density", "dem", number, "kg/m³", required, in(above_zero),
-       "2600.0", "the density of the solid particles"},
-      {"participants.*.material.law", "dem", text, "", R"("linear")",
-       one_of({"linear", "linear_by_size", "hertz_mindlin"}), R"("linear")",
-       "the contacts: springs of one stiffness, springs from a modulus and the radii, or spheres "
-       "of Hertz and Mindlin, which have no bonds"},
-      {"participants.*.material.normal_stiffness", "dem", number, "N/m", none, in(above_zero),
-       "1e10", "the normal stiffness of law = \"linear\"; in 2D per metre of thickness", live},
-      {"participants.*.material.tangential_stiffness", "dem", number, "N/m", none, in(from_zero),
-       "2e9", "the tangential stiffness of law = \"linear\"; in 2D per metre of thickness", live},
-      {"participants.*.material.contact_modulus", "dem", number, "Pa", none, in(above_zero), "2e10",
-       "E_c of law = \"linear_by_size\": normal stiffness 4 E_c r_i r_j / (r_i + r_j), in 2D E_c"},
-      {"participants.*.material.stiffness_ratio", "dem", number, "", none, in(from_zero), "0.3",
-       "tangential over normal stiffness of law = \"linear_by_size\""},
-      {"participants.*.material.young_modulus", "dem", number, "Pa", none, in(above_zero), "7e10",
-       "Young's modulus of the particles of law = \"hertz_mindlin\""},
-      {"participants.*.material.poisson_ratio", "dem", number, "", none,
-       in({.least = -1.0, .most = 0.5, .without_least = true}), "0.23",
-       "Poisson's ratio of the particles of law = \"hertz_mindlin\""},
-      {"participants.*.material.friction", "dem", number, "", "0.0", in(from_zero), "0.839",
-       "the Coulomb friction coefficient of contacts without a bond"},
-      {"participants.*.material.rolling_friction", "dem", number, "", "0.0", in(from_zero), "0.1",
-       "mu_r: contacts without a bond resist rolling with up to mu_r r_i r_j / (r_i + r_j) |F_n|"},
-      {"participants.*.material.restitution", "dem", number, "", "1.0",
-       in({.least = 0.0, .most = 1.0, .without_least = true}), "0.9",
-       "the coefficient of restitution that dashpots give a collision; 1 for no dashpots"},
-      {"participants.*.material.tensile_strength", "dem", number, "N", none, in(from_zero), "2.9e4",
-       "the normal force that breaks a bond, in 2D per metre; unbreakable when not given"},
-      {"participants.*.material.shear_strength", "dem", number, "N", none, in(from_zero), "2.9e4",
-       "the tangential force that breaks a bond, in 2D per metre; unbreakable when not given"},
-      {"participants.*.material.tensile_stress", "dem", number, "Pa", none, in(from_zero), "1e7",
-       "the tensile strength over the cross-section of a bond"},
-      {"participants.*.material.shear_stress", "dem", number, "Pa", none, in(from_zero), "1e7",
-       "the shear strength over the cross-section of a bond"},
-      {"participants.*.material.bond_radius_ratio", "dem", number, "", "0.0", in(from_zero), "1.0",
-       "the radius of the bond's cross-section over the smaller particle's: bonds bend and twist; "
-       "0 for bonds without moments"},
       {"participants.*.bonds", "dem", table, "", tables, anything, "bonds",
        "which particles are bonded"},
       {"participants.*.bonds.kind", "dem", text, "", R"("brittle")", one_of({"brittle", "none"}),
@@ -285,9 +246,9 @@ std::vector<Key> motion_keys(const std::string& kind) {
 } // namespace
 
 std::vector<Key> particle_keys() {
-  return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), model_of_particles(),
-                 tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(), in_situ_keys(),
-                 mass_scaling_keys(), watch_of_particles()});
+  return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), material_keys(),
+                 model_of_particles(), tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(),
+                 in_situ_keys(), mass_scaling_keys(), watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {

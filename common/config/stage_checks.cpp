@@ -151,6 +151,14 @@ private:
                     fmt::format("give one of {}.", fmt::join(allowed, ", ")));
   }
 
+  static bool has_springs(const json& participant) {
+    json all = participant["materials"];
+    all.push_back(participant["material"]);
+    return std::any_of(all.begin(), all.end(), [](const json& material) {
+      return !material["normal_stiffness"].is_null() || !material["contact_modulus"].is_null();
+    });
+  }
+
   void check_change(const string& key, const json& change) {
     const json* participant = participant_of(key, change);
     if (participant == nullptr)
@@ -160,9 +168,10 @@ private:
                     "name a participant of kind dem.");
       return;
     }
-    if (!change["bond_gap"].is_null() && (*participant)["material"]["law"] == "hertz_mindlin")
-      problems_.add(key + ".bond_gap", key + ".bond_gap is given, but hertz_mindlin has no bonds.",
-                    "leave it out, or choose another law.");
+    if (!change["bond_gap"].is_null() && !has_springs(*participant))
+      problems_.add(key + ".bond_gap",
+                    key + ".bond_gap is given, but its materials have no springs for bonds.",
+                    "leave it out, or give a material normal_stiffness and tangential_stiffness.");
     for (std::size_t k = 0; k < change["tools"].size(); ++k)
       check_member(fmt::format("{}.tools[{}].name", key, k), change["tools"][k]["name"], "tool",
                    (*participant)["tools"]);

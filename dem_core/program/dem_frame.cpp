@@ -86,6 +86,9 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
   const auto cluster = of_particles([&](std::uint32_t i) {
     return p.is_member(i) ? std::int64_t{p.cluster[i]} - 1 : std::int64_t{-1};
   });
+  const auto material = of_particles([&](std::uint32_t i) {
+    return p.material.empty() ? std::int64_t{0} : std::int64_t{p.material[i]};
+  });
   const auto weight =
       of_particles([&](std::uint32_t i) { return p.weight.empty() ? 1.0 : p.weight[i]; });
   const auto radius = from(p.radius), mass = from(p.mass);
@@ -138,6 +141,8 @@ void write_dem_frame(FrameWriter& frames, std::uint64_t step, double time,
            field("bonded", bonded), field("normal_force", normal_force),
            field("tangential_force", tangential_force), field("normal_stiffness", normal_stiffness),
            field("tangential_stiffness", tangential_stiffness), field("weight", contact_weight)}}};
+  if (!p.material.empty())
+    grids[0].point_fields.push_back(field("material", material));
   grids.insert(grids.end(), tools.begin(), tools.end());
   frames.write(step, time, grids);
 }

@@ -1,10 +1,8 @@
 #include "dem_core/program/read_clusters.hpp"
 
-#include "common/text_file.hpp"
+#include "dem_core/program/read_selection.hpp"
 #include "dem_core/program/read_table.hpp"
 
-#include <cmath>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,39 +10,6 @@
 namespace kerf::dem {
 
 namespace {
-
-std::vector<std::uint32_t> read_ids(const Node& node) {
-  std::vector<std::uint32_t> ids;
-  for (std::size_t k = 0; k < node.size(); ++k) {
-    const double id = node[k].number();
-    if (!(id >= 0.0) || id != std::floor(id) || id > 4e9)
-      node[k].fail(fmt::format("{} is not the id of a particle", id), "give whole numbers from 0");
-    ids.push_back(static_cast<std::uint32_t>(id));
-  }
-  return ids;
-}
-
-/// The particles of each number in the last column of a file, by ascending numbers.
-std::map<double, std::vector<std::uint32_t>> read_numbers(const Node& node, std::size_t particles) {
-  std::map<double, std::vector<std::uint32_t>> members;
-  std::uint32_t line = 0;
-  try {
-    TextFile file(node.text(), '#');
-    for (; file.next(); ++line) {
-      const double number = file.number(file.words().size() - 1);
-      if (number != std::floor(number))
-        file.fail(fmt::format("{} is not a whole number", number));
-      if (number >= 0.0)
-        members[number].push_back(line);
-    }
-  } catch (const FileError& error) {
-    node.fail(error.what(), "correct the file, or name another one");
-  }
-  if (line != particles)
-    node.fail(fmt::format("it has {} lines for {} particles", line, particles),
-              "give one line for each particle, in their order");
-  return members;
-}
 
 template <int dim> auto read_inertia(const Node& node) {
   node.must_hold(dim == 2 ? 1 : 6, dim == 2 ? "number" : "numbers: xx yy zz yz xz xy");
@@ -95,7 +60,7 @@ std::vector<ClusterSettings<dim>> read_clusters(const Node& list, std::size_t pa
   for (std::size_t k = 0; k < list.size(); ++k) {
     ClusterSettings<dim> cluster = read_cluster<dim>(list[k]);
     if (!list[k]["file"].is_null()) {
-      for (auto& [number, members] : read_numbers(list[k]["file"], particles)) {
+      for (auto& [number, members] : read_groups(list[k]["file"], particles)) {
         cluster.name = fmt::format("{}, body {} of its file", list[k].key(), number);
         cluster.ids = std::move(members);
         clusters.push_back(cluster);

@@ -4,6 +4,7 @@
 #include "dem_core/bonding.hpp"
 #include "dem_core/lattice.hpp"
 #include "dem_core/program/read_clusters.hpp"
+#include "dem_core/program/read_materials.hpp"
 #include "dem_core/program/read_table.hpp"
 #include "dem_core/program/read_tools.hpp"
 
@@ -57,36 +58,6 @@ template <int dim> void read_file(const Node& node, Settings<dim>& s) {
   } catch (const PackingError& error) {
     node.fail(error.what());
   }
-}
-
-Material read_material(const Node& node) {
-  Material m;
-  m.density = node["density"].positive();
-  const std::map<std::string, int> laws = {
-      {"linear", 0}, {"linear_by_size", 1}, {"hertz_mindlin", 2}};
-  switch (node["law"].is_null() ? 0 : node["law"].one_of(laws)) {
-  case 0:
-    m.normal_stiffness = node["normal_stiffness"].positive();
-    m.tangential_stiffness = node["tangential_stiffness"].not_negative_or(0.0);
-    break;
-  case 1:
-    m.contact_modulus = node["contact_modulus"].positive();
-    m.stiffness_ratio = node["stiffness_ratio"].not_negative_or(0.0);
-    break;
-  default:
-    m.law = NormalLaw::hertz_mindlin;
-    m.young_modulus = node["young_modulus"].positive();
-    m.poisson_ratio = node["poisson_ratio"].number();
-  }
-  m.friction = node["friction"].not_negative_or(0.0);
-  m.rolling_friction = node["rolling_friction"].not_negative_or(0.0);
-  m.restitution = node["restitution"].number_or(1.0);
-  m.tensile_strength = node["tensile_strength"].not_negative_or(m.tensile_strength);
-  m.shear_strength = node["shear_strength"].not_negative_or(m.shear_strength);
-  m.tensile_stress = node["tensile_stress"].not_negative_or(m.tensile_stress);
-  m.shear_stress = node["shear_stress"].not_negative_or(m.shear_stress);
-  m.bond_radius_ratio = node["bond_radius_ratio"].not_negative_or(0.0);
-  return m;
 }
 
 Damping read_damping(const Node& node) {
@@ -185,6 +156,8 @@ template <int dim> double read_gap_tolerance(const Node& bonds, const Settings<d
   const Node number = bonds["coordination_number"];
   if (number.is_null())
     return bonds["gap_tolerance"].not_negative_or(s.gap_tolerance);
+  if (!s.other_materials.empty())
+    number.fail("it is for particles of one material", "give gap_tolerance");
   try {
     return gap_tolerance_for<dim>(number.positive(), s.positions, s.radii, s.period);
   } catch (const std::invalid_argument& error) {
@@ -221,10 +194,10 @@ Settings<dim> read_settings(const nlohmann::json& table, const nlohmann::json& c
     read_lattice(particles["lattice"], particles["radius"], s);
   else
     read_file(particles["file"], s);
-  s.material = read_material(node["material"]);
+  read_materials(node, s);
   s.period = read_period<dim>(Node(case_table, "")["periodic"]);
   const Node kind = node["bonds"]["kind"];
-  s.bonds = s.material.law == NormalLaw::linear && (kind.is_null() || kind.text() != "none");
+  s.bonds = kind.is_null() || kind.text() != "none";
   s.gap_tolerance = read_gap_tolerance<dim>(node["bonds"], s);
   if (const Node rule = node["bonds"]["shear_increment"]; !rule.is_null())
     s.shear_increment = rule.one_of(shear_increments);

@@ -155,7 +155,7 @@ void Peers<dim>::write_lammps_data(const dem::Settings<dim>& settings,
   for (std::size_t i = 0; i < engine.size(); ++i) {
     const Vec<3> x = in_space<dim>(particles.reference[i]);
     const double diameter = 2.0 * particles.radius[i];
-    const double density = sphere_density<dim>(particles.density, particles.radius[i]);
+    const double density = sphere_density<dim>(particles.density[i], particles.radius[i]);
     if (with_bonds) // atom_style hybrid sphere bond
       file.print("{} 1 {} {} {} {} {} 1\n", i + 1, x[0], x[1], x[2], diameter, density);
     else

@@ -1,6 +1,7 @@
 # Tests of common/: case files, results, histories, surfaces.
 add_executable(common_tests
   ${PROJECT_SOURCE_DIR}/tests/config/broken_cases.cpp
+  ${PROJECT_SOURCE_DIR}/tests/config/broken_materials.cpp
   ${PROJECT_SOURCE_DIR}/tests/config/settings.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_checkpoint.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_facet_contact.cpp

@@ -7,6 +7,8 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/dem_damping.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_engine.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_lattice.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_materials.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/dem_materials_read.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_neighbours.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_order.cpp
   ${CMAKE_CURRENT_LIST_DIR}/dem_packing.cpp
@@ -24,6 +26,7 @@ add_executable(dem_tests
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_lattice_moduli.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_mass_scaling.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_materials.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_momentum.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_oscillation.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/dem_packing_moduli.cpp
@@ -39,6 +42,7 @@ gtest_discover_tests(dem_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${
 kerf_python_test(case.tools verification/tools.py Tools)
 kerf_python_test(case.boundaries verification/bodies.py Boundaries)
 kerf_python_test(case.clusters verification/bodies.py Clusters)
+kerf_python_test(case.materials verification/bodies.py Materials)
 kerf_python_test(case.mass_scaling verification/bodies.py MassScaling)
 kerf_python_test(case.in_situ_stress verification/bodies.py InSituStress verification)
 kerf_python_test(case.grains verification/bodies.py Grains)

@@ -369,5 +369,85 @@ class Grains(Bodies):
         self.assertEqual(result.returncode, 0, result.stderr)
 
 
+# A bonded block in a box; the particles above it are loose spheres of another material.
+ROCK_AND_GRAINS = """[case]
+name = "grains"
+dimension = 3
+end_time = 2e-5
+
+[case.output]
+frames = 2
+history = 10
+
+[participants.grains]
+kind = "dem"
+threads = 1
+gravity = [0.0, 0.0, -9.81]
+particles.lattice = { type = "cubic", spacing = 1e-3, origin = [0.0, 0.0, 0.0], count = [4, 4, 6] }
+
+[participants.grains.material]
+name = "rock"
+density = 2600.0
+normal_stiffness = 1e7
+tangential_stiffness = 2e6
+tensile_strength = 0.5
+shear_strength = 0.5
+
+[[participants.grains.materials]]
+name = "glass"
+box = [[-1.0, -1.0, 2.5e-3], [1.0, 1.0, 1.0]]
+density = 1500.0
+law = "hertz_mindlin"
+young_modulus = 2e9
+poisson_ratio = 0.25
+friction = 0.3
+
+[[participants.grains.pairs]]
+between = ["rock", "glass"]
+law = "hertz_mindlin"
+young_modulus = 5e9
+poisson_ratio = 0.2
+friction = 0.4
+
+[[participants.grains.initial]]
+box = [[-1.0, -1.0, 2.5e-3], [1.0, 1.0, 1.0]]
+kind = "velocity"
+velocity = [0.0, 0.1, -2.0]
+"""
+
+
+class Materials(Bodies):
+    def test_rock_and_grains_have_their_masses_laws_and_bonds(self):
+        import h5py
+        run = self.run_case(self.write_case(ROCK_AND_GRAINS))
+        with h5py.File(sorted((run / "frames").glob("grains_*.h5"))[-1]) as frame:
+            material = frame["particles/material"][:].ravel()
+            mass = frame["particles/mass"][:].ravel()
+            z = frame["particles/position"][:, 2]
+        self.assertEqual(sorted(set(material)), [0, 1])
+        volume = math.pi / 6.0 * 1e-9
+        for k in range(len(mass)):
+            self.assertAlmostEqual(mass[k], (2600.0, 1500.0)[material[k]] * volume, delta=1e-20)
+        self.assertLess(max(z[material == 0]), max(z[material == 1]))
+        bonds = self.run_case(self.write_case(ROCK_AND_GRAINS), "--set", "case.end_time=1e-7", out="short")
+        with h5py.File(sorted((bonds / "frames").glob("grains_*.h5"))[0]) as frame:
+            self.assertEqual(int(frame["contacts/bonded"][:].sum()), 3 * 24 + 2 * 16)  # of 4 x 4 x 3
+
+    def test_histories_have_the_same_bits_for_any_number_of_threads(self):
+        case = self.write_case(ROCK_AND_GRAINS)
+        one = self.run_case(case, out="one")
+        two = self.run_case(case, "--set", "participants.grains.threads=2", out="two")
+        name = "grains.csv"
+        self.assertEqual((one / "history" / name).read_bytes(), (two / "history" / name).read_bytes())
+
+    def test_what_cannot_be_is_refused_with_its_key(self):
+        key = "participants.grains."
+        self.assert_refused(ROCK_AND_GRAINS, 'between = ["rock", "glass"]', 'between = ["rock", "gless"]',
+                            key + "pairs[0].between", "did you mean glass")
+        self.assert_refused(ROCK_AND_GRAINS, "box = [[-1.0, -1.0, 2.5e-3], [1.0, 1.0, 1.0]]\ndensity",
+                            "box = [[-1.0, -1.0, 2.5], [1.0, 1.0, 3.0]]\ndensity",
+                            key + "materials[0]", "no particle is of the material")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -98,7 +98,7 @@ template <int dim> double largest_speed(dem::Engine<dim>& engine, double stress)
   }
   const double k = engine.contacts().normal_stiffness[0], m = engine.particles().mass[0];
   const double c = std::sqrt(k / m) * spacing;
-  return largest / (stress / (engine.particles().density * c));
+  return largest / (stress / (engine.particles().density[0] * c));
 }
 
 const std::string balance = "equilibrium of every particle at the start, in-situ stress",
