@@ -390,13 +390,19 @@ KERF_INLINE void compute_loose(ContactView<dim>& c, std::size_t begin, std::size
       continue;
     chunk.start(c, k, end);
     prefetch(c, least(end, k + 2 * chunk_size), least(end, k + 3 * chunk_size));
-    gather<dim, true, false>(c, chunk);
+    const bool were_apart = *clear_until > 0.0;
+    if (were_apart)
+      gather<dim, true, false>(c, chunk);
+    else
+      gather<dim, true, true>(c, chunk);
     for_batches(c, chunk, [&](auto batch) KERF_LAMBDA { find_opening<dim>(batch, chunk); });
     if (const double gap = least_gap(c, chunk); gap > 0.0) {
       *clear_until = c.travelled + 0.4999 * gap; // both may come nearer
       continue;
     }
-    gather<dim, false, true>(c, chunk);
+    *clear_until = 0.0;
+    if (were_apart)
+      gather<dim, false, true>(c, chunk);
     finish<dim, Law, more, false>(c, chunk);
   }
 }

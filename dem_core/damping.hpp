@@ -1,6 +1,7 @@
 // Non-viscous damping: dissipation that asks for no viscosity and no natural frequency.
 #pragma once
 
+#include "dem_core/boundary.hpp"
 #include "dem_core/contact_forces.hpp"
 #include "dem_core/particles.hpp"
 #include "dem_core/settings.hpp"
@@ -33,10 +34,11 @@ Vector damping_force(DampingKind kind, double alpha, const Vector& force,
 }
 
 /// Adds damping to the own resultants of a block, but for members of clusters, and keeps it beside
-/// for the books. The velocity is that of half a step before, v^(n-1/2).
+/// for the books. The velocity is that of half a step before, v^(n-1/2). Of particles whose motion
+/// is given in part only the free components count.
 /// @pre loads.damping has room for all particles, unless it is empty and nothing is damped
 template <int dim>
-void add_damping(const Damping& damping, const Particles<dim>& particles, ParticleBlock block,
-                 Loads<dim>& loads);
+void add_damping(const Damping& damping, const Particles<dim>& particles,
+                 const Boundary<dim>& boundary, ParticleBlock block, Loads<dim>& loads);
 
 } // namespace kerf::dem

@@ -29,7 +29,8 @@ template <int dim> void Engine<dim>::scale_mass() {
     const ContactsToCome to_come =
         contacts_to_come(materials_, contacts_, particles_, boundary_, clusters_);
     const double time = std::max(dashpot_time(contacts_, particles_), to_come.dashpot_time);
-    const double wished = 1.0 / (0.25 * step * step + 0.5 * time * step); // see with_dashpots()
+    const double wished = 1.0 / (0.25 * step * step + 0.5 * time * step) / // see with_dashpots()
+                          damping_.stiffening();
     const std::vector<double> walls = wall_sums<dim>(tools_, wall_contacts_, particles_, boundary_);
     const std::vector<double> sums = row_sums(), sums_of_clusters = cluster_sums();
     for (std::size_t i = 0; i < size(); ++i)

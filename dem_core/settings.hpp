@@ -5,6 +5,7 @@
 #include "dem_core/tool_motion.hpp"
 #include "dem_core/tool_shape.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -78,6 +79,8 @@ struct Damping {
   double rotation = 0.0;    // alpha_r, share of the resultant moment
 
   bool is_on() const noexcept { return translation != 0.0 || rotation != 0.0; }
+  /// Against the fastest motion a resultant grows by as much at most, and its stiffness with it.
+  double stiffening() const noexcept { return 1.0 + std::max(translation, rotation); }
 };
 
 enum class Motion {

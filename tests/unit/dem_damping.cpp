@@ -1,5 +1,6 @@
 // Non-viscous damping and the componentwise form.
 #include "dem_core/damping.hpp"
+#include "dem_core/engine.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,6 +32,34 @@ TEST(Damping, is_zero_at_rest) {
   const Vec<3> F(1.0, -0.5, 2.0);
   for (const auto kind : {DampingKind::nonviscous, DampingKind::componentwise})
     EXPECT_EQ(damping_force<Vec<3>>(kind, 0.3, F, Vec<3>::Zero()), (Vec<3>::Zero()));
+}
+
+// A particle on a vertical guide: what the guide carries, 10 m, does not damp the motion along it,
+// of which the weight of 1 m is left by 1 - alpha. Rounding.
+TEST(Damping, of_a_particle_that_is_held_in_part_counts_what_is_free) {
+  for (const auto kind : {DampingKind::nonviscous, DampingKind::componentwise}) {
+    dem::Settings<2> settings;
+    settings.positions = {{0.0, 0.0}};
+    settings.radii = {1.0};
+    settings.material.density = 1.0;
+    settings.material.normal_stiffness = 1.0;
+    settings.damping = {kind, 0.3, 0.3};
+    settings.gravity = {-10.0, -1.0};
+    dem::Prescription<2> guide;
+    guide.box = {Vec<2>::Constant(-1.0), Vec<2>::Constant(1.0)};
+    guide.components = 1;
+    settings.boundary = {guide};
+    dem::Engine<2> engine(settings);
+    engine.start(1e-3);
+    engine.integrate();
+    engine.compute_own_forces();
+    const std::uint32_t point[] = {0};
+    double force[2];
+    engine.own_forces(point, force);
+    const double mass = engine.particles().mass[0];
+    EXPECT_NEAR(force[0], -10.0 * mass, 1e-14 * mass);
+    EXPECT_NEAR(force[1], -0.7 * mass, 1e-14 * mass);
+  }
 }
 
 } // namespace
