@@ -55,7 +55,7 @@ public:
 
   std::size_t size() const noexcept { return particles_.size(); }
   const Particles<dim>& particles() const noexcept { return particles_; }
-  /// As of the last compute_own_forces().
+  /// As of the last time that forces were computed.
   const Contacts<dim>& contacts() const noexcept { return contacts_; }
   const Boundary<dim>& boundary() const noexcept { return boundary_; }
   const Period<dim>& period() const noexcept { return period_; }

@@ -26,7 +26,8 @@ namespace {
 using coupler::SettingsError;
 using nlohmann::json;
 
-/// Measures the two calls in which an engine works, has the cracks written as they happen, and
+/// Measures the two calls in which an engine works (without a coupling all is in the second), has
+/// the cracks written as they happen, and
 /// watches the critical step, which falls as contacts form.
 template <int dim> class RecordedEngine {
 public:

@@ -359,6 +359,7 @@ class Grains(Bodies):
         run = self.run_case(case)  # the step holds when they do
         grains = rows(run, "grains")
         self.assertGreater(max(grains["elastic_energy"]), 0.0)
+        # Contacts last a few steps at 0.8 of the critical one: an impact at omega dt = 0.4 already misses 3 %.
         self.assertLess(max(abs(k + e - w + f) for k, e, w, f in zip(
             grains["kinetic_energy"], grains["elastic_energy"], grains["external_work"],
             grains["friction_dissipation"])), 0.1 * max(grains["external_work"]))
