@@ -120,7 +120,7 @@ KERF_INLINE Lanes square_root(const Lanes& x) {
 /// 1 / sqrt(x) to the last digit or two; x > 0.
 KERF_INLINE Lanes inverse_square_root(const Lanes& x) {
 #if defined(__AVX512F__)
-  Lanes y = (Lanes)_mm512_rsqrt14_pd((__m512d)x); // 14 bits, doubled by each Newton iteration
+  Lanes y = (Lanes)_mm512_maskz_rsqrt14_pd(-1, (__m512d)x); // 14 bits, doubled by each Newton iteration
   const Lanes half = 0.5 * x;
   y = y * (1.5 - half * y * y);
   return y * (1.5 - half * y * y);
@@ -131,7 +131,7 @@ KERF_INLINE Lanes inverse_square_root(const Lanes& x) {
 /// 1 / x, likewise; x is not zero.
 KERF_INLINE Lanes inverse(const Lanes& x) {
 #if defined(__AVX512F__)
-  Lanes y = (Lanes)_mm512_rcp14_pd((__m512d)x);
+  Lanes y = (Lanes)_mm512_maskz_rcp14_pd(-1, (__m512d)x);
   y = y * (2.0 - x * y);
   return y * (2.0 - x * y);
 #else

@@ -1,46 +1,119 @@
 #include "fem_core/internal_force.hpp"
 
-#include "fem_core/parallel.hpp"
+#include "common/instruction_set.hpp"
 
-namespace kerf::fem {
+#include <algorithm>
+#include <cstring>
 
-template <int dim>
-void compute_element_forces(const Elements<dim>& elements, const LinearElastic& material,
-                            std::span<const double> displacement, std::span<double> element_force) {
-  const auto size = static_cast<std::int64_t>(elements.size());
-#pragma omp parallel for schedule(static) if (size >= least_parallel_size)
-  for (std::int64_t e = 0; e < size; ++e) {
-    const NodeVectors<dim> u = elements.relative_displacement(e, displacement);
-    NodeVectors<dim> f = NodeVectors<dim>::Zero();
-    for (int q = 0; q < gauss_points<dim>; ++q) {
-      const Tensor<dim> sigma = material.stress<dim>(elements.strain(e, q, u));
-      f += elements.volume_at(e, q) * sigma * elements.gradient(e, q); // B^T sigma, by columns
-    }
-    Eigen::Map<NodeVectors<dim>>(element_force.data() + e * f.size()) = f;
-  }
+namespace kerf {
+
+namespace baseline {
+fem::PatchKernel kernel_of(const fem::KernelKey& key);
+}
+namespace avx2 {
+fem::PatchKernel kernel_of(const fem::KernelKey& key);
+}
+namespace avx512 {
+fem::PatchKernel kernel_of(const fem::KernelKey& key);
+}
+
+namespace fem {
+namespace {
+
+/// Copies the rows of a patch, own ones first.
+template <int dim, class Value>
+void copy_rows(const Patches& patches, const Patch& patch, Value value, Rows<dim>& to) {
+  for (std::uint32_t k = 0; k < patch.num_own; ++k)
+    value(patch.first_row + k, to.at(k));
+  for (std::uint32_t k = 0; k < patch.num_shared; ++k)
+    value(patches.shared[patch.first_shared + k], to.at(patch.num_own + k));
+}
+
+/// The part of an array of a group that belongs to a patch; null when there is no array.
+template <class Number>
+auto* part(Number& array, std::size_t per_batch, const Patch& patch) {
+  return array.empty() ? nullptr : array.data() + patch.first_batch * per_batch;
+}
+
+} // namespace
+
+template <int dim> PatchScratch<dim>::PatchScratch(const Patches& patches) {
+  std::size_t most = 0;
+  for (const Patch& patch : patches.patches)
+    most = std::max<std::size_t>(most, patch.num_rows());
+  for (Rows<dim>* rows : {&reference, &motion, &velocity, &force})
+    rows->resize(most);
 }
 
 template <int dim>
-void gather_element_forces(const Elements<dim>& elements, std::span<const double> element_force,
-                           std::span<double> node_force) {
-  const auto num_nodes = static_cast<std::int64_t>(elements.num_nodes());
-#pragma omp parallel for schedule(static) if (num_nodes >= least_parallel_size)
-  for (std::int64_t a = 0; a < num_nodes; ++a) {
-    Vec<dim> f = Vec<dim>::Zero();
-    for (std::size_t k = elements.first_corner[a]; k < elements.first_corner[a + 1]; ++k)
-      f -=
-          Eigen::Map<const Vec<dim>>(element_force.data() + std::size_t{elements.corners[k]} * dim);
-    Eigen::Map<Vec<dim>>(node_force.data() + a * dim) = f;
+ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
+                          const Motion<dim>& motion, bool wants_energy,
+                          PatchScratch<dim>& scratch) {
+  constexpr std::size_t size = sizeof(Row<dim>);
+  const bool rate = group.kinematics == Kinematics::rate;
+  const bool viscous = !group.length.empty();
+  const double* reference = motion.reference.at(patch.first_copy);
+  if (rate) {
+    const double* const X = reference;
+    copy_rows(
+        patches, patch,
+        [&](std::uint32_t row, double* to) {
+          const std::size_t k = (to - scratch.reference.data());
+          for (int i = 0; i < row_size<dim>; ++i)
+            to[i] = X[k + i] + motion.displacement.at(row)[i];
+        },
+        scratch.reference);
+    reference = scratch.reference.data();
   }
+  const Rows<dim>& moved = rate || group.increments ? motion.velocity : motion.displacement;
+  copy_rows(
+      patches, patch,
+      [&](std::uint32_t row, double* to) { std::memcpy(to, moved.at(row), size); }, scratch.motion);
+  if (viscous)
+    copy_rows(
+        patches, patch,
+        [&](std::uint32_t row, double* to) { std::memcpy(to, motion.velocity.at(row), size); },
+        scratch.velocity);
+  std::memset(scratch.force.data(), 0, patch.num_rows() * size);
+
+  const Shape shape = patches.groups[patch.group].shape;
+  const auto corners = static_cast<std::size_t>(nodes_of(shape)) * batch_size;
+  const std::size_t batches = patches.num_batches(patch.group);
+  const auto per_batch = [&](const std::vector<double>& array) { return array.size() / batches; };
+  PatchView view{
+      .num_elements = patch.num_elements,
+      .nodes = patches.nodes[patch.group].data() + patch.first_batch * corners,
+      .reference = reference,
+      .motion = scratch.motion.data(),
+      .motion_scale = rate || group.increments ? motion.time_step : 1.0,
+      .velocity = viscous ? scratch.velocity.data() : nullptr,
+      .force = scratch.force.data(),
+      .alpha = part(group.alpha, per_batch(group.alpha), patch),
+      .length = part(group.length, per_batch(group.length), patch),
+      .dilatation = part(group.dilatation, per_batch(group.dilatation), patch),
+      .stress = part(group.stress, per_batch(group.stress), patch),
+      .history = part(group.history, per_batch(group.history), patch),
+      .hourglass = part(group.hourglass, per_batch(group.hourglass), patch),
+      .time_step = motion.time_step,
+      .wants_energy = wants_energy,
+      .law = group.law,
+      .constants = group.constants,
+      .work = {},
+  };
+  group.compute(view);
+  return view.work;
 }
 
-template void compute_element_forces<2>(const Elements<2>&, const LinearElastic&,
-                                        std::span<const double>, std::span<double>);
-template void compute_element_forces<3>(const Elements<3>&, const LinearElastic&,
-                                        std::span<const double>, std::span<double>);
-template void gather_element_forces<2>(const Elements<2>&, std::span<const double>,
-                                       std::span<double>);
-template void gather_element_forces<3>(const Elements<3>&, std::span<const double>,
-                                       std::span<double>);
+PatchKernel find_kernel(const KernelKey& key) {
+  return dispatch(baseline::kernel_of, avx2::kernel_of, avx512::kernel_of)(key);
+}
 
-} // namespace kerf::fem
+template class PatchScratch<2>;
+template class PatchScratch<3>;
+template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const Motion<2>&,
+                                   bool, PatchScratch<2>&);
+template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const Motion<3>&,
+                                   bool, PatchScratch<3>&);
+
+} // namespace fem
+} // namespace kerf

@@ -1,28 +1,50 @@
-// Internal forces of the elements, and their sum at the nodes.
+// Internal forces of the elements, patch by patch; Rojek (2008) eqs 23, 24 and 44.
 #pragma once
 
-#include "fem_core/elements.hpp"
-#include "fem_core/materials.hpp"
+#include "fem_core/patches.hpp"
+#include "fem_core/rows.hpp"
 
-#include <span>
+#include <vector>
 
 namespace kerf::fem {
 
-/// Internal forces of every element at its own nodes, f = sum_q B^T sigma alpha detJ; Rojek (2008)
-/// eqs 24 and 44 with small strain.
-///
-/// @param displacement   [num_nodes][dim] m
-/// @param element_force  [elements.size()][element_nodes][dim] receives the forces, N
-template <int dim>
-void compute_element_forces(const Elements<dim>& elements, const LinearElastic& material,
-                            std::span<const double> displacement, std::span<double> element_force);
+/// What the kernels are told of a group of elements.
+struct GroupKernel {
+  PatchKernel compute = nullptr;
+  Kinematics kinematics = Kinematics::small;
+  bool increments = false; // the law takes increments of strain, and its stress is stored
+  PointLaw law = {};
+  ElementConstants constants = {};
 
-/// Resultant -F^int of the element forces at every node, N; Rojek (2008) eq. 23. A node adds up its
-/// corners in the order of the elements, so the bits do not depend on the number of threads.
-///
-/// @param node_force  [num_nodes][dim] receives the resultants, N
+  // Arrays of the group as PatchView has them; empty where there is nothing of the kind.
+  std::vector<double> alpha, length, dilatation;
+  std::vector<double> stress, history, hourglass; // change in every step
+};
+
+/// Motion of the nodes as the kernels need it.
+template <int dim> struct Motion {
+  const Rows<dim>& reference;    // X, m
+  const Rows<dim>& displacement; // u^n, m
+  const Rows<dim>& velocity;     // v^(n-1/2), m/s
+  double time_step;              // from v, s; 0: there was no increment
+};
+
+/// Rows of one patch, one copy a thread.
+template <int dim> class PatchScratch {
+public:
+  /// Sizes for the largest patch.
+  explicit PatchScratch(const Patches& patches);
+
+  Rows<dim> reference, motion, velocity, force;
+};
+
+/// Computes -F^int of one patch into scratch.force, own rows first, and follows stress and history.
+/// @param wants_energy  instead: work.internal is the energy at u; nothing is followed
 template <int dim>
-void gather_element_forces(const Elements<dim>& elements, std::span<const double> element_force,
-                           std::span<double> node_force);
+ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
+                          const Motion<dim>& motion, bool wants_energy, PatchScratch<dim>& scratch);
+
+/// The kernel of this machine's instructions; null when there is none of the kind.
+PatchKernel find_kernel(const KernelKey& key);
 
 } // namespace kerf::fem

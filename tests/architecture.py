@@ -9,12 +9,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 # room -> rooms that it may include from, beside itself; the longest matching path names the room
 VIEWS = {"common/" + name for name in ("instruction_set.hpp", "lanes.hpp", "ordered_sum.hpp", "state.hpp",
                                        "vec.hpp")}
-GEOMETRY = {"common/" + name for name in ("facet_contact.hpp", "facet_grid.hpp", "surface.hpp",
+GEOMETRY = {"common/" + name for name in ("facet_contact.hpp", "facet_grid.hpp", "spatial_order.hpp", "surface.hpp",
                                          "surface_topology.hpp")}
 ALLOWED = {
     "common": set(),
     "dem_core": VIEWS | GEOMETRY,
-    "fem_core": VIEWS,
+    "fem_core": VIEWS | GEOMETRY,
     "dem_core/program": {"dem_core", "common", "coupler/participant", "coupler/channel", "coupler/protocol"},
     "fem_core/program": {"fem_core", "common", "coupler/participant", "coupler/channel", "coupler/protocol"},
     "coupler/protocol": set(),

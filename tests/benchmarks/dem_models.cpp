@@ -5,7 +5,7 @@
 #include "dem_core/packing/packing.hpp"
 #include "dem_core/packing/random.hpp"
 #include "dem_core/program/packing_cache.hpp"
-#include "dem_core/spatial_order.hpp"
+#include "common/spatial_order.hpp"
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ template <int dim> dem::ParticleSet<dim> make_packing(const Workload& workload) 
 
 template <int dim> dem::ParticleSet<dim> in_spatial_order(const dem::ParticleSet<dim>& particles) {
   dem::ParticleSet<dim> ordered;
-  for (const std::uint32_t i : dem::spatial_order<dim>(particles.positions)) {
+  for (const std::uint32_t i : kerf::spatial_order<dim>(particles.positions)) {
     ordered.positions.push_back(particles.positions[i]);
     ordered.radii.push_back(particles.radii[i]);
   }

@@ -1,0 +1,145 @@
+// Small matrices of lanes: Jacobians, gradients and the turn of a stress.
+#pragma once
+
+#include "fem_core/kernels/shapes.hpp"
+#include "fem_core/laws/symmetric.hpp"
+
+namespace kerf::KERF_ISA {
+
+using fem::Symmetric;
+
+template <int dim> struct Matrix {
+  Lanes m[dim][dim];
+};
+template <int dim> using Tensor = Symmetric<Lanes, dim>;
+
+/// J = dx/dxi at a point, without the factor of the modes, and its cofactors; J^-1 = cof^T / det.
+template <int dim> struct Jacobian {
+  Matrix<dim> cof;
+  Lanes det;
+
+  KERF_INLINE explicit Jacobian(const Matrix<dim>& j) {
+    const auto& m = j.m;
+    if constexpr (dim == 2) {
+      cof = {{{m[1][1], -m[1][0]}, {-m[0][1], m[0][0]}}};
+      det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    } else {
+      for (int i = 0; i < 3; ++i) {
+        const auto& p = m[(i + 1) % 3];
+        const auto& q = m[(i + 2) % 3];
+        for (int d = 0; d < 3; ++d)
+          cof.m[i][d] = p[(d + 1) % 3] * q[(d + 2) % 3] - p[(d + 2) % 3] * q[(d + 1) % 3];
+      }
+      det = m[0][0] * cof.m[0][0] + m[0][1] * cof.m[0][1] + m[0][2] * cof.m[0][2];
+    }
+  }
+  /// Gradient [component][axis of space] of a field with these derivatives, times det.
+  KERF_INLINE Matrix<dim> gradient_times_det(const Matrix<dim>& derivatives) const {
+    Matrix<dim> g;
+    for (int i = 0; i < dim; ++i)
+      for (int c = 0; c < dim; ++c) {
+        Lanes sum = derivatives.m[i][0] * cof.m[c][0];
+        for (int d = 1; d < dim; ++d)
+          sum += derivatives.m[i][d] * cof.m[c][d];
+        g.m[i][c] = sum;
+      }
+    return g;
+  }
+};
+
+template <Shape shape>
+KERF_INLINE Matrix<ShapeOf<shape>::dim> at_point(const Derivatives<shape>& of, int q) {
+  Matrix<ShapeOf<shape>::dim> m;
+  for (int i = 0; i < ShapeOf<shape>::dim; ++i)
+    for (int d = 0; d < ShapeOf<shape>::dim; ++d)
+      m.m[i][d] = of.at(q, i, d);
+  return m;
+}
+
+template <int dim>
+KERF_INLINE Matrix<dim> sum(const Matrix<dim>& a, double factor, const Matrix<dim>& b) {
+  Matrix<dim> result;
+  for (int i = 0; i < dim; ++i)
+    for (int d = 0; d < dim; ++d)
+      result.m[i][d] = a.m[i][d] + factor * b.m[i][d];
+  return result;
+}
+
+/// Symmetric part of factor * g; zz of 2D is zero.
+template <int dim> KERF_INLINE Tensor<dim> symmetric(const Matrix<dim>& g, const Lanes& factor) {
+  const Lanes half = 0.5 * factor;
+  if constexpr (dim == 2)
+    return {factor * g.m[0][0], factor * g.m[1][1], Lanes{}, half * (g.m[0][1] + g.m[1][0])};
+  else
+    return {factor * g.m[0][0],
+            factor * g.m[1][1],
+            factor * g.m[2][2],
+            half * (g.m[1][2] + g.m[2][1]),
+            half * (g.m[0][2] + g.m[2][0]),
+            half * (g.m[0][1] + g.m[1][0])};
+}
+
+/// Rows of a symmetric tensor in the plane or the space of the elements.
+template <int dim> constexpr int component_of(int i, int j) {
+  if constexpr (dim == 2)
+    return i == j ? i : 3;
+  else
+    return i == j ? i : 6 - i - j;
+}
+
+/// Adds factor * stress . cof to the derivatives at a point.
+template <Shape shape, int dim>
+KERF_INLINE void add_force(Derivatives<shape>& force, int q, const Tensor<dim>& stress,
+                           const Matrix<dim>& cof, const Lanes& factor) {
+  for (int i = 0; i < dim; ++i) {
+    Lanes s[dim];
+    for (int c = 0; c < dim; ++c)
+      s[c] = factor * stress[component_of<dim>(i, c)];
+    for (int d = 0; d < dim; ++d) {
+      Lanes total = s[0] * cof.m[0][d];
+      for (int c = 1; c < dim; ++c)
+        total += s[c] * cof.m[c][d];
+      force.add(q, i, d, total);
+    }
+  }
+}
+
+/// Turns a stress by the rotation that an increment of spin makes: R = (1 - W/2)^-1 (1 + W/2), which
+/// is a rotation whatever its size; T. J. R. Hughes and J. Winget, doi:10.1002/nme.1620151210.
+/// @param g  factor * g is the gradient of the displacement increment in the middle of the step
+template <int dim>
+KERF_INLINE void turn(Tensor<dim>& s, const Matrix<dim>& g, const Lanes& factor) {
+  const Lanes quarter = 0.25 * factor; // half the axial vector of W
+  if constexpr (dim == 2) {
+    const Lanes a = quarter * (g.m[1][0] - g.m[0][1]);
+    const Lanes f = 1.0 / (1.0 + a * a);
+    const Lanes cosine = (1.0 - a * a) * f, sine = 2.0 * a * f;
+    const Lanes mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
+    const Lanes c2 = cosine * cosine - sine * sine, s2 = 2.0 * cosine * sine;
+    const Lanes turned = c2 * half - s2 * s[3];
+    s[3] = s2 * half + c2 * s[3];
+    s[0] = mean + turned;
+    s[1] = mean - turned;
+  } else {
+    const Lanes x = quarter * (g.m[2][1] - g.m[1][2]);
+    const Lanes y = quarter * (g.m[0][2] - g.m[2][0]);
+    const Lanes z = quarter * (g.m[1][0] - g.m[0][1]);
+    const Lanes f = 2.0 / (1.0 + x * x + y * y + z * z);
+    const Lanes r[3][3] = {
+        {1.0 - f * (y * y + z * z), f * (x * y - z), f * (x * z + y)},
+        {f * (x * y + z), 1.0 - f * (x * x + z * z), f * (y * z - x)},
+        {f * (x * z - y), f * (y * z + x), 1.0 - f * (x * x + y * y)}};
+    Lanes t[3][3]; // R s
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        t[i][j] = r[i][0] * s[component_of<3>(0, j)] + r[i][1] * s[component_of<3>(1, j)] +
+                  r[i][2] * s[component_of<3>(2, j)];
+    Tensor<3> turned;
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j)
+        turned[component_of<3>(i, j)] = t[i][0] * r[j][0] + t[i][1] * r[j][1] + t[i][2] * r[j][2];
+    s = turned;
+  }
+}
+
+} // namespace kerf::KERF_ISA
