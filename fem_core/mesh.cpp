@@ -6,109 +6,80 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
+#include <cassert>
 #include <numeric>
+#include <set>
 
 namespace kerf::fem {
 namespace {
 
-constexpr const char* axis_name[] = {"x", "y", "z"};
-
-template <int dim> struct Side {
-  const char* tag;
-  int axis;
-  int upper; // 1 at the upper end of the axis
-  std::array<int, face_nodes<dim>> corners;
-};
-
-template <int dim> constexpr auto sides() {
-  if constexpr (dim == 2)
-    return std::array<Side<2>, 4>{{{"left", 0, 0, {3, 0}},
-                                   {"right", 0, 1, {1, 2}},
-                                   {"bottom", 1, 0, {0, 1}},
-                                   {"top", 1, 1, {2, 3}}}};
-  else
-    return std::array<Side<3>, 6>{{{"left", 0, 0, {0, 4, 7, 3}},
-                                   {"right", 0, 1, {1, 2, 6, 5}},
-                                   {"bottom", 1, 0, {0, 1, 5, 4}},
-                                   {"top", 1, 1, {3, 7, 6, 2}},
-                                   {"back", 2, 0, {0, 3, 2, 1}},
-                                   {"front", 2, 1, {4, 5, 6, 7}}}};
+/// Calls visit(faces) or visit(members) for whatever has the tag.
+template <class Sets, class Visit>
+void with_tag(const Sets& sets, const std::string& tag, Visit visit) {
+  if (const auto found = sets.find(tag); found != sets.end())
+    visit(found->second);
 }
 
-template <int dim> void check(const BoxMesh<dim>& box, const Period<dim>& period) {
-  double corners = element_nodes<dim>; // as a real number, which cannot overflow
-  for (int a = 0; a < dim; ++a) {
-    if (!(box.size[a] > 0.0 && std::isfinite(box.size[a]) && std::isfinite(box.origin[a])))
-      throw InputError("mesh.size", fmt::format("the size along {} is {} m; it must be positive",
-                                                axis_name[a], box.size[a]));
-    if (box.count[a] == 0)
-      throw InputError("mesh.count",
-                       fmt::format("there must be at least one element along {}", axis_name[a]));
-    corners *= static_cast<double>(box.count[a] + 1);
-    if (period.length[a] == 0.0)
-      continue;
-    if (!(std::abs(box.size[a] - period.length[a]) <= 1e-9 * period.length[a]))
-      throw InputError("mesh.size",
-                       fmt::format("the size along the periodic axis {} is {} m; it must be the "
-                                   "period, {} m",
-                                   axis_name[a], box.size[a], period.length[a]));
-    if (box.count[a] < 3)
-      throw InputError("mesh.count", fmt::format("there are {} elements along the periodic axis "
-                                                 "{}; there must be at least three",
-                                                 box.count[a], axis_name[a]));
-  }
-  if (corners > std::numeric_limits<std::uint32_t>::max())
-    throw InputError("mesh.count", "the mesh has more corners than 32 bits can number");
+template <int dim> std::set<std::string> tags_of(const Mesh<dim>& mesh) {
+  std::set<std::string> tags;
+  for (const auto& [tag, faces] : mesh.boundary)
+    tags.insert(tag);
+  for (const auto& [tag, elements] : mesh.regions)
+    tags.insert(tag);
+  for (const auto& [tag, nodes] : mesh.node_sets)
+    tags.insert(tag);
+  return tags;
 }
 
 } // namespace
 
-template <int dim> Mesh<dim> make_box(const BoxMesh<dim>& box, const Period<dim>& period) {
-  check(box, period);
+template <int dim> std::size_t Mesh<dim>::num_elements() const {
+  std::size_t size = 0;
+  for (const Block& block : blocks)
+    size += block.size();
+  return size;
+}
 
-  // Counts along each axis; a missing third axis has one layer of nodes and of elements.
-  std::array<std::size_t, 3> cells = {1, 1, 1};
-  std::array<std::size_t, 3> nodes = {1, 1, 1};
-  for (int a = 0; a < dim; ++a) {
-    cells[a] = box.count[a];
-    nodes[a] = period.length[a] > 0.0 ? cells[a] : cells[a] + 1;
+template <int dim> Shape Mesh<dim>::shape_of(std::size_t element) const {
+  for (const Block& block : blocks) {
+    if (element < block.size())
+      return block.shape;
+    element -= block.size();
   }
+  assert(false);
+  return {};
+}
 
-  Mesh<dim> mesh;
-  mesh.period = period;
-  mesh.positions.reserve(nodes[0] * nodes[1] * nodes[2] * dim);
-  std::array<std::size_t, 3> at;
-  for (at[2] = 0; at[2] < nodes[2]; ++at[2])
-    for (at[1] = 0; at[1] < nodes[1]; ++at[1])
-      for (at[0] = 0; at[0] < nodes[0]; ++at[0])
-        for (int a = 0; a < dim; ++a) // divided last: the upper end is met exactly
-          mesh.positions.push_back(box.origin[a] + box.size[a] * static_cast<double>(at[a]) /
-                                                       static_cast<double>(cells[a]));
+template <int dim>
+std::span<const std::uint32_t> Mesh<dim>::nodes_of_element(std::size_t element) const {
+  for (const Block& block : blocks) {
+    const auto count = static_cast<std::size_t>(nodes_of(block.shape));
+    if (element < block.size())
+      return std::span(block.nodes).subspan(element * count, count);
+    element -= block.size();
+  }
+  assert(false);
+  return {};
+}
 
-  mesh.elements.reserve(cells[0] * cells[1] * cells[2] * element_nodes<dim>);
-  for (const Side<dim>& side : sides<dim>())
-    if (period.length[side.axis] == 0.0)
-      mesh.boundary[side.tag] = {};
-  for (at[2] = 0; at[2] < cells[2]; ++at[2])
-    for (at[1] = 0; at[1] < cells[1]; ++at[1])
-      for (at[0] = 0; at[0] < cells[0]; ++at[0]) {
-        std::array<std::uint32_t, element_nodes<dim>> corners;
-        for (int c = 0; c < element_nodes<dim>; ++c) {
-          std::array<std::size_t, 3> node = {0, 0, 0};
-          for (int a = 0; a < dim; ++a)
-            node[a] = (at[a] + static_cast<std::size_t>(corner_side(c, a))) % nodes[a];
-          corners[c] =
-              static_cast<std::uint32_t>((node[2] * nodes[1] + node[1]) * nodes[0] + node[0]);
-        }
-        mesh.elements.insert(mesh.elements.end(), corners.begin(), corners.end());
-        for (const Side<dim>& side : sides<dim>())
-          if (period.length[side.axis] == 0.0 &&
-              at[side.axis] == (side.upper ? cells[side.axis] - 1 : 0))
-            for (const int c : side.corners)
-              mesh.boundary[side.tag].push_back(corners[c]);
-      }
-  return mesh;
+template <int dim> std::vector<std::uint32_t> Mesh<dim>::nodes_of_face(const Face& face) const {
+  const std::span<const std::uint32_t> nodes = nodes_of_element(face.element);
+  std::vector<std::uint32_t> result;
+  for (const std::uint8_t a : side_nodes(shape_of(face.element), face.side))
+    result.push_back(nodes[a]);
+  return result;
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, Eigen::Dynamic, 0, dim, 8>
+Mesh<dim>::corners(std::size_t element) const {
+  const std::span<const std::uint32_t> nodes = nodes_of_element(element);
+  Eigen::Matrix<double, dim, Eigen::Dynamic, 0, dim, 8> result(
+      dim, static_cast<Eigen::Index>(nodes.size()));
+  const Vec<dim> first = position(nodes[0]);
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    result.col(static_cast<Eigen::Index>(a)) = first + period.shortest(position(nodes[a]) - first);
+  return result;
 }
 
 template <int dim>
@@ -119,22 +90,33 @@ std::vector<std::uint32_t> nodes_with_tag(const Mesh<dim>& mesh, const std::stri
     std::iota(nodes.begin(), nodes.end(), 0u);
     return nodes;
   }
-  const auto found = mesh.boundary.find(tag);
-  if (found == mesh.boundary.end()) {
-    std::vector<std::string> tags = {"all"};
-    for (const auto& [name, faces] : mesh.boundary)
-      tags.push_back(name);
+  std::set<std::string> tags = tags_of(mesh);
+  if (!tags.contains(tag)) {
+    std::vector<std::string> known(tags.begin(), tags.end());
+    known.insert(known.begin(), "all");
     throw InputError(key, fmt::format("the mesh has no tag \"{}\"; its tags are {}", tag,
-                                      fmt::join(tags, ", ")));
+                                      fmt::join(known, ", ")));
   }
-  std::vector<std::uint32_t> nodes = found->second;
+  std::vector<std::uint32_t> nodes;
+  const auto add = [&](const auto& members) {
+    nodes.insert(nodes.end(), members.begin(), members.end());
+  };
+  with_tag(mesh.boundary, tag, [&](const std::vector<Face>& faces) {
+    for (const Face& face : faces)
+      add(mesh.nodes_of_face(face));
+  });
+  with_tag(mesh.regions, tag, [&](const std::vector<std::uint32_t>& elements) {
+    for (const std::uint32_t element : elements)
+      add(mesh.nodes_of_element(element));
+  });
+  with_tag(mesh.node_sets, tag, add);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 
-template Mesh<2> make_box<2>(const BoxMesh<2>&, const Period<2>&);
-template Mesh<3> make_box<3>(const BoxMesh<3>&, const Period<3>&);
+template struct Mesh<2>;
+template struct Mesh<3>;
 template std::vector<std::uint32_t> nodes_with_tag<2>(const Mesh<2>&, const std::string&,
                                                       const std::string&);
 template std::vector<std::uint32_t> nodes_with_tag<3>(const Mesh<3>&, const std::string&,
