@@ -110,7 +110,7 @@ KERF_INLINE Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) {
 }
 KERF_INLINE Lanes square_root(const Lanes& x) {
 #if defined(__AVX512F__)
-  return (Lanes)_mm512_sqrt_pd((__m512d)x);
+  return (Lanes)_mm512_maskz_sqrt_pd(-1, (__m512d)x);
 #elif defined(__AVX__)
   return (Lanes)_mm256_sqrt_pd((__m256d)x);
 #else

@@ -136,9 +136,8 @@ template <int dim> std::vector<ElementPoint<dim>> points_of(const Element<dim>& 
     point.N = shape_functions<dim>(element.shape, xi);
     point.gradient = J.transpose().inverse() * dN;
     point.volume = weight_of(element.shape) * det;
-    if (!element.alpha.empty())
-      point.volume *=
-          point.N.dot(Eigen::Map<const CornerValues>(element.alpha.data(), point.N.size()));
+    if (element.alpha.size() > 0)
+      point.volume *= point.N.dot(element.alpha);
     if (element.space == Space::axisymmetric) {
       point.radius = element.corners.row(0).dot(point.N);
       point.volume *= 2.0 * std::numbers::pi * point.radius;

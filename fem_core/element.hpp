@@ -5,7 +5,6 @@
 #include "fem_core/kernels/patch_view.hpp"
 #include "fem_core/laws/moduli.hpp"
 
-#include <span>
 #include <vector>
 
 namespace kerf::fem {
@@ -42,7 +41,7 @@ template <int dim> struct Element {
   Shape shape = Shape::quad4;
   Space space = Space::plane;
   Corners<dim> corners;            // m
-  std::span<const double> alpha{}; // of the corners; empty: one
+  CornerValues alpha;              // of the corners; empty: one
 };
 
 /// Shape functions and their derivatives over the reference element: [-1, 1]^dim of quad4 and hex8,

@@ -1,67 +1,238 @@
 #include "fem_core/engine.hpp"
 
-#include "common/ordered_sum.hpp"
 #include "fem_core/initial.hpp"
-#include "fem_core/integrate.hpp"
-#include "fem_core/internal_force.hpp"
-#include "fem_core/mass.hpp"
+#include "fem_core/input_error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace kerf::fem {
+namespace {
+
+constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t rows_per_block = 1024;
+
+} // namespace
 
 template <int dim>
 Engine<dim>::Engine(Mesh<dim> mesh, Settings<dim> settings)
     : mesh_(std::move(mesh)), settings_(std::move(settings)), boundary_(mesh_, settings_.boundary) {
   std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
   add_initial<dim>(mesh_, settings_.initial, u, v); // throws now, not when the run starts
+  assign_materials();
   set_weights({});
 }
 
+template <int dim> void Engine<dim>::assign_materials() {
+  constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+  material_of_.assign(mesh_.num_elements(), none);
+  for (std::uint32_t k = 0; k < settings_.materials.size(); ++k) {
+    const MaterialSetting<dim>& setting = settings_.materials[k];
+    std::size_t count = 0;
+    const auto give = [&](std::uint32_t e) {
+      if (setting.box && !setting.box->contains(mesh_.corners(e).rowwise().mean()))
+        return;
+      material_of_[e] = k;
+      ++count;
+      try {
+        check(setting.material, mesh_.shape_of(e), settings_.plane);
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("materials[{}].{}", k, error.key()), error.what());
+      }
+    };
+    if (setting.region.empty()) {
+      for (std::uint32_t e = 0; e < mesh_.num_elements(); ++e)
+        give(e);
+    } else {
+      const auto found = mesh_.regions.find(setting.region);
+      if (found == mesh_.regions.end())
+        throw InputError(fmt::format("materials[{}].region", k),
+                         fmt::format("the mesh has no elements with the tag \"{}\"",
+                                     setting.region));
+      std::for_each(found->second.begin(), found->second.end(), give);
+    }
+    if (count == 0)
+      throw InputError(fmt::format("materials[{}].box", k),
+                       "no element of the mesh has its centre in the box");
+  }
+  const auto without = std::find(material_of_.begin(), material_of_.end(), none);
+  if (without != material_of_.end())
+    throw InputError("materials", fmt::format("element {} has no material",
+                                              without - material_of_.begin()));
+}
+
 template <int dim> void Engine<dim>::set_weights(std::span<const double> alpha) {
-  elements_ = make_elements(mesh_, alpha);
-  mass_ = lumped_mass(elements_, settings_.material.density);
-  element_omega2_ = element_omega2(elements_, settings_.material);
-  inverse_mass_.assign(mass_.size() * dim, 0.0);
-  for (std::size_t dof = 0; dof < inverse_mass_.size(); ++dof)
-    if (mass_[dof / dim] > 0.0)
-      inverse_mass_[dof] = 1.0 / mass_[dof / dim];
+  if (!alpha.empty() && alpha.size() != mesh_.num_nodes())
+    throw std::invalid_argument(
+        fmt::format("{} weights were given for {} nodes", alpha.size(), mesh_.num_nodes()));
+  for (std::size_t a = 0; a < alpha.size(); ++a)
+    if (!(alpha[a] >= 0.0 && alpha[a] <= 1.0))
+      throw std::invalid_argument(
+          fmt::format("the weight of node {} is {}; it must be from 0 to 1", a, alpha[a]));
+  alpha_.assign(alpha.begin(), alpha.end());
+  active_.clear();
+  for (std::uint32_t e = 0; e < mesh_.num_elements(); ++e) {
+    const auto nodes = mesh_.nodes_of_element(e);
+    if (alpha_.empty() || std::any_of(nodes.begin(), nodes.end(),
+                                      [&](std::uint32_t a) { return alpha_[a] > 0.0; }))
+      active_.push_back(e);
+  }
+  make_groups();
+
+  mass_.assign(patches_.num_rows(), 0.0);
+  for (const std::uint32_t e : active_) {
+    const ElementModel<dim> model = model_of(e);
+    CornerValues of_element;
+    try {
+      of_element = lumped_mass(model.element, model.density);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("element {}: {}", e, error.what()));
+    }
+    const auto nodes = mesh_.nodes_of_element(e);
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      mass_[patches_.row_of_node[nodes[a]]] += of_element[static_cast<Eigen::Index>(a)];
+  }
   moved_.clear();
+  for (const Prescribed& entry : boundary_.entries()) {
+    const std::uint32_t row = patches_.row_of_node[entry.node];
+    if (mass_[row] > 0.0)
+      moved_.push_back({.row = row, .component = entry.component, .node = entry.node});
+  }
+}
+
+/// Groups elements by material and shape, and lays them out in patches.
+template <int dim> void Engine<dim>::make_groups() {
+  std::vector<ElementGroup> groups;
+  std::vector<std::uint32_t> material; // of each group
+  for (std::uint32_t k = 0; k < settings_.materials.size(); ++k)
+    for (const Block& block : mesh_.blocks) {
+      ElementGroup group{.shape = block.shape, .elements = {}};
+      for (const std::uint32_t e : active_)
+        if (material_of_[e] == k && mesh_.shape_of(e) == block.shape)
+          group.elements.push_back(e);
+      if (group.elements.empty())
+        continue;
+      groups.push_back(std::move(group));
+      material.push_back(k);
+    }
+  std::vector<bool> special(mesh_.num_nodes(), false);
   for (const Prescribed& entry : boundary_.entries())
-    if (mass_[entry.node] > 0.0) {
-      moved_.push_back(entry);
-      inverse_mass_[std::size_t{entry.node} * dim + entry.component] = 0.0;
+    special[entry.node] = true;
+  patches_ = Patches(mesh_, std::move(groups), special);
+
+  groups_.clear();
+  place_.assign(mesh_.num_elements(), 0);
+  group_of_.assign(mesh_.num_elements(), 0);
+  for (std::size_t g = 0; g < patches_.groups.size(); ++g) {
+    const auto& elements = patches_.element_of[g];
+    std::vector<double> lengths(elements.size());
+    for (std::size_t k = elements.size(); k-- > 0;) { // what fills a batch comes after the element
+      double volume = 0.0;
+      for (const ElementPoint<dim>& point : points_of(
+               Element<dim>{.shape = patches_.groups[g].shape,
+                            .corners = mesh_.corners(elements[k]),
+                            .alpha = {}}))
+        volume += point.volume;
+      lengths[k] = std::pow(volume, 1.0 / dim);
+      place_[elements[k]] = static_cast<std::uint32_t>(k);
+      group_of_[elements[k]] = static_cast<std::uint32_t>(g);
+    }
+    const Material& of_group = settings_.materials[material[g]].material;
+    groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths));
+    if (alpha_.empty())
+      continue;
+    GroupKernel& group = groups_.back();
+    const auto points = static_cast<std::size_t>(group.points);
+    group.alpha.resize(elements.size() * points);
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      const Element<dim> blended = model_of(elements[k]).element;
+      Element<dim> whole = blended;
+      whole.alpha.resize(0);
+      const auto of_blended = points_of(blended), of_whole = points_of(whole);
+      double share = 0.0, volume = 0.0;
+      for (std::size_t q = 0; q < of_whole.size(); ++q) {
+        share += of_blended[q].volume;
+        volume += of_whole[q].volume;
+        if (points == of_whole.size())
+          group.alpha[(k / batch_size * points + q) * batch_size + k % batch_size] =
+              of_blended[q].volume / of_whole[q].volume;
+      }
+      if (points != of_whole.size())
+        group.alpha[k] = share / volume;
+    }
+  }
+
+  reference_ = Rows<dim>(patches_.num_copies());
+  for (const Patch& patch : patches_.patches)
+    for (std::uint32_t k = 0; k < patch.num_rows(); ++k) {
+      const std::uint32_t row = k < patch.num_own
+                                    ? patch.first_row + k
+                                    : patches_.shared[patch.first_shared + k - patch.num_own];
+      reference_[patch.first_copy + k] = mesh_.position(patches_.node_of_row[row]);
     }
 }
 
+template <int dim> ElementModel<dim> Engine<dim>::model_of(std::uint32_t element) const {
+  const Material& material = settings_.materials[material_of_[element]].material;
+  ElementModel<dim> model{
+      .element = {.shape = mesh_.shape_of(element),
+                  .space = settings_.plane == Plane::axisymmetric ? Space::axisymmetric
+                                                                  : Space::plane,
+                  .corners = mesh_.corners(element),
+                  .alpha = {}},
+      .formulation = material.formulation,
+      .moduli = material.bound(),
+      .hourglass = material.hourglass_stiffness * material.bound().uniaxial(),
+      .density = material.density()};
+  if (!alpha_.empty()) {
+    const auto nodes = mesh_.nodes_of_element(element);
+    model.element.alpha.resize(static_cast<Eigen::Index>(nodes.size()));
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      model.element.alpha[static_cast<Eigen::Index>(a)] = alpha_[nodes[a]];
+  }
+  return model;
+}
+
 template <int dim> StepLimit Engine<dim>::step_limit() const {
-  const auto largest = std::max_element(element_omega2_.begin(), element_omega2_.end());
-  if (largest == element_omega2_.end())
+  if (active_.empty())
     return {.omega2 = 0.0, .limited_by = "no element"};
-  return {.omega2 = *largest,
-          .limited_by =
-              fmt::format("element {}", elements_.number[largest - element_omega2_.begin()])};
+  const LargestOmega2 largest = largest_omega2<dim>(
+      active_.size(), [this](std::size_t k) { return model_of(active_[k]); });
+  return {.omega2 = largest.value,
+          .limited_by = fmt::format("element {}", active_[largest.element])};
 }
 
 template <int dim>
 void Engine<dim>::inverse_mass(std::span<const std::uint32_t> nodes, std::span<double> out) const {
   for (std::size_t k = 0; k < nodes.size(); ++k)
-    for (int i = 0; i < dim; ++i)
-      out[k * dim + i] = inverse_mass_[std::size_t{nodes[k]} * dim + i];
+    for (int i = 0; i < dim; ++i) {
+      const double mass = mass_[patches_.row_of_node[nodes[k]]];
+      out[k * dim + i] =
+          mass > 0.0 && !boundary_.is_prescribed(nodes[k], i) ? 1.0 / mass : 0.0;
+    }
 }
 
 template <int dim>
 void Engine<dim>::omega2(std::span<const std::uint32_t> nodes, std::span<double> out) const {
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    out[k] = 0.0;
-    for (std::size_t c = elements_.first_corner[nodes[k]]; c < elements_.first_corner[nodes[k] + 1];
-         ++c)
-      out[k] = std::max(out[k], element_omega2_[elements_.corners[c] / element_nodes<dim>]);
+  std::vector<double> of_node(mesh_.num_nodes(), -1.0); // of those that are asked for
+  for (const std::uint32_t a : nodes)
+    of_node[a] = 0.0;
+  for (const std::uint32_t e : active_) {
+    const auto corners = mesh_.nodes_of_element(e);
+    if (std::none_of(corners.begin(), corners.end(),
+                     [&](std::uint32_t a) { return of_node[a] >= 0.0; }))
+      continue;
+    const double bound = omega2_of(model_of(e));
+    for (const std::uint32_t a : corners)
+      if (of_node[a] >= 0.0)
+        of_node[a] = std::max(of_node[a], bound);
   }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    out[k] = of_node[nodes[k]];
 }
 
 template <int dim> void Engine<dim>::start(double time_step) {
@@ -69,126 +240,275 @@ template <int dim> void Engine<dim>::start(double time_step) {
     throw std::invalid_argument(fmt::format("the time step {} s must be positive", time_step));
   time_step_ = time_step;
   step_ = 0;
-  const std::size_t size = mesh_.num_nodes() * dim;
-  displacement_.assign(size, 0.0);
-  velocity_.assign(size, 0.0);
-  add_initial<dim>(mesh_, settings_.initial, displacement_, velocity_);
-  for (std::size_t dof = 0; dof < size; ++dof)
-    if (!(mass_[dof / dim] > 0.0))
-      displacement_[dof] = velocity_[dof] = 0.0;
+  std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
+  add_initial<dim>(mesh_, settings_.initial, u, v);
+  const std::size_t rows = patches_.num_rows();
+  displacement_ = velocity_ = force_ = Rows<dim>(rows);
+  parts_ = Rows<dim>(patches_.shared.size());
+  for (std::size_t row = 0; row < rows; ++row)
+    if (mass_[row] > 0.0) {
+      const std::size_t a = patches_.node_of_row[row];
+      displacement_[row] = Eigen::Map<const Vec<dim>>(&u[a * dim]);
+      velocity_[row] = Eigen::Map<const Vec<dim>>(&v[a * dim]);
+    }
   initial_displacement_.clear();
-  for (const Prescribed& p : moved_) {
-    const std::size_t dof = std::size_t{p.node} * dim + p.component;
-    initial_displacement_.push_back(displacement_[dof]);
-    velocity_[dof] = boundary_.velocity(p.node, p.component, -1, time_step);
+  for (const auto& [row, component, node] : moved_) {
+    initial_displacement_.push_back(displacement_[row][component]);
+    velocity_[row][component] = boundary_.velocity(node, component, -1, time_step);
   }
-  displacement_before_ = displacement_;
-  velocity_before_ = velocity_;
-  element_force_.assign(elements_.size() * element_nodes<dim> * dim, 0.0);
-  own_force_.assign(size, 0.0);
-  interface_force_.assign(size, 0.0);
-  has_interface_force_ = false;
-  external_work_ = interface_work_ = {};
+  forces_are_current_ = false;
+  interface_rows_.clear();
+  interface_force_ = {};
+  element_work_ = {};
+  sums_ = {};
+  damped_work_ = reaction_work_ = gravity_work_ = interface_work_ = {};
 }
 
 template <int dim>
 void Engine<dim>::motion(std::span<const std::uint32_t> nodes, std::span<double> position,
                          std::span<double> velocity) const {
-  for (std::size_t k = 0; k < nodes.size(); ++k)
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::uint32_t row = patches_.row_of_node[nodes[k]];
     for (int i = 0; i < dim; ++i) {
-      const std::size_t dof = std::size_t{nodes[k]} * dim + i;
-      position[k * dim + i] = mesh_.positions[dof] + displacement_[dof];
-      const bool moved = boundary_.is_prescribed(nodes[k], i) && mass_[nodes[k]] > 0.0;
+      position[k * dim + i] = mesh_.positions[std::size_t{nodes[k]} * dim + i] +
+                              displacement_[row][i];
+      const bool moved = boundary_.is_prescribed(nodes[k], i) && mass_[row] > 0.0;
       velocity[k * dim + i] =
-          moved ? boundary_.velocity(nodes[k], i, step_, time_step_) : velocity_[dof];
+          moved ? boundary_.velocity(nodes[k], i, step_, time_step_) : velocity_[row][i];
     }
+  }
 }
 
 template <int dim> void Engine<dim>::compute_own_forces() {
-  compute_element_forces<dim>(elements_, settings_.material, displacement_, element_force_);
-  gather_element_forces<dim>(elements_, element_force_, own_force_);
-  if (has_interface_force_)
-    std::fill(interface_force_.begin(), interface_force_.end(), 0.0);
-  has_interface_force_ = false;
+  for (const std::uint32_t row : interface_rows_)
+    interface_force_[row].setZero();
+  interface_rows_.clear();
+  compute_forces(false);
+  forces_are_current_ = true;
+}
+
+/// Computes the internal forces of all patches. A patch that need not wait for others finishes its
+/// own rows while they are in the cache.
+template <int dim> void Engine<dim>::compute_forces(bool finish) {
+  // There has been no increment before the first step.
+  const PatchMotion<dim> motion{reference_, displacement_, velocity_, step_ == 0 ? 0.0 : time_step_};
+  const StepSettings<dim> step = step_settings();
+  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
+  std::vector<ElementWork> work(patches_.patches.size());
+  patch_sums_.assign(patches_.patches.size(), {});
+#pragma omp parallel if (num_patches > 1)
+  {
+    PatchScratch<dim> scratch(patches_);
+#pragma omp for schedule(static)
+    for (std::int64_t p = 0; p < num_patches; ++p) {
+      const auto k = static_cast<std::size_t>(p);
+      const Patch& patch = patches_.patches[k];
+      work[k] = compute_patch<dim>(patches_, patch, groups_[patch.group], motion, false, scratch);
+      std::copy_n(scratch.force.at(patch.num_own), patch.num_shared * row_size<dim>,
+                  parts_.at(patch.first_shared));
+      if (finish)
+        advance<dim>(step, patch.num_own, &mass_[patch.first_row], scratch.force.data(), nullptr,
+                     velocity_.at(patch.first_row), displacement_.at(patch.first_row),
+                     patch_sums_[k]);
+      else
+        std::copy_n(scratch.force.data(), patch.num_own * row_size<dim>,
+                    force_.at(patch.first_row));
+    }
+  }
+  for (const ElementWork& of_patch : work) {
+    element_work_.internal += of_patch.internal;
+    element_work_.dissipated += of_patch.dissipated;
+    element_work_.hourglass += of_patch.hourglass;
+    element_work_.viscous += of_patch.viscous;
+  }
+  const auto num_special = static_cast<std::int64_t>(patches_.num_special);
+#pragma omp parallel for schedule(static) if (num_special > 1000)
+  for (std::int64_t k = 0; k < num_special; ++k) {
+    Row<dim> sum;
+    for (std::uint32_t part = patches_.first_part[k]; part < patches_.first_part[k + 1]; ++part)
+      for (int i = 0; i < row_size<dim>; ++i)
+        sum.x[i] += parts_.at(patches_.parts[part])[i];
+    std::copy_n(sum.x, row_size<dim>, force_.at(patches_.num_plain + static_cast<std::size_t>(k)));
+  }
+}
+
+template <int dim> StepSettings<dim> Engine<dim>::step_settings() const {
+  return {.time_step = time_step_,
+          .first = step_ == 0,
+          .gravity = settings_.gravity,
+          .mass_damping = settings_.mass_damping,
+          .local_damping = settings_.local_damping};
 }
 
 template <int dim>
 void Engine<dim>::own_forces(std::span<const std::uint32_t> nodes, std::span<double> force) const {
   for (std::size_t k = 0; k < nodes.size(); ++k)
     for (int i = 0; i < dim; ++i)
-      force[k * dim + i] = own_force_[std::size_t{nodes[k]} * dim + i];
+      force[k * dim + i] = force_[patches_.row_of_node[nodes[k]]][i];
 }
 
 template <int dim>
 void Engine<dim>::add_interface_forces(std::span<const std::uint32_t> nodes,
                                        std::span<const double> force) {
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    for (int i = 0; i < dim; ++i)
-      interface_force_[std::size_t{nodes[k]} * dim + i] += force[k * dim + i];
-  has_interface_force_ = has_interface_force_ || !nodes.empty();
-}
-
-template <int dim> void Engine<dim>::integrate() {
-  const Loads loads{
-      .own = own_force_, .interface = interface_force_, .inverse_mass = inverse_mass_};
-  if (step_ == 0)
-    step_back_half(loads, time_step_, velocity_);
-  advance(loads, time_step_, velocity_, displacement_, velocity_before_, displacement_before_);
-  std::swap(velocity_, velocity_before_);
-  std::swap(displacement_, displacement_before_);
-  move_boundary();
-  external_work_.add(reaction_work(), step_ == 0);
-  interface_work_.add(has_interface_force_ ? interface_work() : Work{}, step_ == 0);
-  ++step_;
-}
-
-/// Gives the prescribed components v^(n+1/2) and u^(n+1).
-template <int dim> void Engine<dim>::move_boundary() {
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    const auto [node, component] = moved_[k];
-    const std::size_t dof = std::size_t{node} * dim + component;
-    velocity_[dof] = boundary_.velocity(node, component, step_, time_step_);
-    displacement_[dof] =
-        initial_displacement_[k] + boundary_.displacement(node, component, step_ + 1, time_step_);
+  if (interface_force_.size() == 0)
+    interface_force_ = Rows<dim>(patches_.num_rows());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::uint32_t row = patches_.row_of_node[nodes[k]];
+    interface_force_[row] += Eigen::Map<const Vec<dim>>(&force[k * dim]);
+    interface_rows_.push_back(row);
   }
 }
 
-template <int dim> Work Engine<dim>::reaction_work() const {
-  return ordered_sum(moved_.size(), [&](std::size_t k) {
-    const std::size_t dof = std::size_t{moved_[k].node} * dim + moved_[k].component;
-    const double before = velocity_before_[dof];
-    const double after = velocity_[dof];
-    const double reaction = mass_[moved_[k].node] * (after - before) / time_step_ -
-                            own_force_[dof] - interface_force_[dof]; // N
-    return Work{.before = 0.5 * time_step_ * reaction * before,
-                .after = 0.5 * time_step_ * reaction * after};
-  });
+template <int dim> void Engine<dim>::integrate() {
+  std::sort(interface_rows_.begin(), interface_rows_.end());
+  interface_rows_.erase(std::unique(interface_rows_.begin(), interface_rows_.end()),
+                        interface_rows_.end());
+  std::vector<Vec<dim>> interface_before;
+  for (const std::uint32_t row : interface_rows_) {
+    force_[row] += interface_force_[row];
+    interface_before.push_back(velocity_[row]);
+  }
+  std::vector<double> moved_before;
+  Rows<dim> prescribed(patches_.num_special);
+  std::fill_n(prescribed.data(), prescribed.size() * row_size<dim>, is_free);
+  for (const Moved& moved : moved_) {
+    moved_before.push_back(velocity_[moved.row][moved.component]);
+    prescribed[moved.row - patches_.num_plain][moved.component] =
+        boundary_.velocity(moved.node, moved.component, step_, time_step_);
+  }
+
+  if (forces_are_current_)
+    advance_plain();
+  else
+    compute_forces(true);
+  advance_special(prescribed);
+
+  const bool first = step_ == 0;
+  Work reactions, of_interface;
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    const Moved& moved = moved_[k];
+    const double after = velocity_[moved.row][moved.component];
+    const double reaction =
+        mass_[moved.row] * ((after - moved_before[k]) / time_step_ -
+                            settings_.gravity[moved.component]) -
+        force_[moved.row][moved.component]; // N
+    reactions += {.before = 0.5 * time_step_ * reaction * moved_before[k],
+                  .after = 0.5 * time_step_ * reaction * after};
+    displacement_[moved.row][moved.component] =
+        initial_displacement_[k] +
+        boundary_.displacement(moved.node, moved.component, step_ + 1, time_step_);
+  }
+  for (std::size_t k = 0; k < interface_rows_.size(); ++k) {
+    const Vec<dim> f = interface_force_[interface_rows_[k]];
+    of_interface += {.before = 0.5 * time_step_ * f.dot(interface_before[k]),
+                     .after = 0.5 * time_step_ * f.dot(velocity_[interface_rows_[k]])};
+  }
+  reaction_work_.add(reactions, first);
+  interface_work_.add(of_interface, first);
+  gravity_work_.add(sums_.gravity, first);
+  damped_work_.add(sums_.damped, first);
+  forces_are_current_ = false;
+  ++step_;
 }
 
-template <int dim> Work Engine<dim>::interface_work() const {
-  return ordered_sum(interface_force_.size(), [&](std::size_t dof) {
-    const double f = interface_force_[dof]; // N
-    return Work{.before = 0.5 * time_step_ * f * velocity_before_[dof],
-                .after = 0.5 * time_step_ * f * velocity_[dof]};
-  });
+/// Of the plain rows, by patches as when those finish them.
+template <int dim> void Engine<dim>::advance_plain() {
+  const StepSettings<dim> step = step_settings();
+  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
+  patch_sums_.assign(patches_.patches.size(), {});
+#pragma omp parallel for schedule(static) if (num_patches > 1)
+  for (std::int64_t p = 0; p < num_patches; ++p) {
+    const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
+    advance<dim>(step, patch.num_own, mass_.data() + patch.first_row, force_.at(patch.first_row),
+                 nullptr, velocity_.at(patch.first_row), displacement_.at(patch.first_row),
+                 patch_sums_[static_cast<std::size_t>(p)]);
+  }
 }
 
+template <int dim> void Engine<dim>::advance_special(const Rows<dim>& prescribed) {
+  const StepSettings<dim> step = step_settings();
+  const std::size_t first = patches_.num_plain, count = patches_.num_special;
+  const std::size_t blocks = (count + rows_per_block - 1) / rows_per_block;
+  std::vector<RowSums<dim>> sums(blocks);
+#pragma omp parallel for schedule(static) if (blocks > 1)
+  for (std::int64_t b = 0; b < static_cast<std::int64_t>(blocks); ++b) {
+    const std::size_t begin = static_cast<std::size_t>(b) * rows_per_block;
+    const std::size_t row = first + begin;
+    advance<dim>(step, std::min(rows_per_block, count - begin), &mass_[row], force_.at(row),
+                 prescribed.at(begin), velocity_.at(row), displacement_.at(row),
+                 sums[static_cast<std::size_t>(b)]);
+  }
+  sums_ = {};
+  for (const RowSums<dim>& of_patch : patch_sums_)
+    sums_ += of_patch;
+  for (const RowSums<dim>& of_block : sums)
+    sums_ += of_block;
+}
+
+/// Of the laws of total strain the energy is that of the displacements, u^n = u^(n+1) - v dt.
 template <int dim> Energies Engine<dim>::energies() const {
-  return {.kinetic = kinetic_energy<dim>(mass_, velocity_before_, velocity_),
-          .elastic = elastic_energy<dim>(elements_, settings_.material, displacement_before_),
-          .external_work = external_work_.at_step(),
+  ElementWork work = element_work_;
+  Rows<dim> u = displacement_;
+  for (std::size_t row = 0; row < u.size(); ++row)
+    u[row] -= time_step_ * velocity_[row];
+  const PatchMotion<dim> motion{reference_, u, velocity_, time_step_};
+  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
+  std::vector<ElementWork> of_patches(patches_.patches.size());
+#pragma omp parallel if (num_patches > 1)
+  {
+    PatchScratch<dim> scratch(patches_);
+#pragma omp for schedule(static)
+    for (std::int64_t p = 0; p < num_patches; ++p) {
+      const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
+      const GroupKernel& group = groups_[patch.group];
+      if (!group.increments) // which computing the energy does not change
+        of_patches[static_cast<std::size_t>(p)] =
+            compute_patch<dim>(patches_, patch, const_cast<GroupKernel&>(group), motion, true, scratch);
+    }
+  }
+  for (const ElementWork& of_patch : of_patches) {
+    work.internal += of_patch.internal;
+    work.hourglass += of_patch.hourglass;
+  }
+  return {.kinetic = sums_.kinetic,
+          .internal = work.internal,
+          .dissipated = work.dissipated,
+          .hourglass = work.hourglass,
+          .damped = damped_work_.at_step() + work.viscous,
+          .external_work = reaction_work_.at_step() + gravity_work_.at_step(),
           .interface_work = interface_work_.at_step()};
 }
 
-template <int dim> Vec<dim> Engine<dim>::momentum() const {
-  return fem::momentum<dim>(mass_, velocity_before_, velocity_);
+template <int dim> std::vector<double> Engine<dim>::by_node(const Rows<dim>& rows) const {
+  std::vector<double> values(mesh_.num_nodes() * dim);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (int i = 0; i < dim; ++i)
+      values[std::size_t{patches_.node_of_row[row]} * dim + static_cast<std::size_t>(i)] =
+          rows[row][i];
+  return values;
+}
+
+template <int dim> std::vector<double> Engine<dim>::displacement() const {
+  return by_node(displacement_);
+}
+
+template <int dim> std::vector<double> Engine<dim>::velocity() const {
+  return by_node(velocity_);
+}
+
+template <int dim> std::vector<double> Engine<dim>::mass() const {
+  std::vector<double> values(mesh_.num_nodes());
+  for (std::size_t row = 0; row < mass_.size(); ++row)
+    values[patches_.node_of_row[row]] = mass_[row];
+  return values;
 }
 
 template <int dim> std::optional<std::uint32_t> Engine<dim>::first_non_finite() const {
-  for (std::size_t dof = 0; dof < displacement_.size(); ++dof)
-    if (!std::isfinite(displacement_[dof]) || !std::isfinite(velocity_[dof]))
-      return static_cast<std::uint32_t>(dof / dim);
-  return std::nullopt;
+  std::optional<std::uint32_t> first;
+  for (std::size_t row = 0; row < displacement_.size(); ++row)
+    if (!displacement_[row].allFinite() || !velocity_[row].allFinite())
+      first = std::min(first.value_or(patches_.node_of_row[row]), patches_.node_of_row[row]);
+  return first;
 }
 
 template class Engine<2>;

@@ -3,11 +3,12 @@
 
 #include "common/state.hpp"
 #include "fem_core/boundary.hpp"
-#include "fem_core/elements.hpp"
+#include "fem_core/element_bounds.hpp"
 #include "fem_core/energy.hpp"
+#include "fem_core/integrate.hpp"
+#include "fem_core/internal_force.hpp"
 #include "fem_core/mesh.hpp"
 #include "fem_core/settings.hpp"
-#include "fem_core/time_step.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -17,13 +18,22 @@
 
 namespace kerf::fem {
 
-/// An explicit finite element body of linear elastic quad4 or hex8 with small strain and lumped
-/// mass. Points are its nodes; arrays of vectors are [n][dim]. Nodes without mass are inert: they
-/// keep their place. The results have the same bits for any number of threads.
+/// Mean of the points of an element, without alpha, and its energy.
+template <int dim> struct ElementState {
+  Symmetric<double, dim> stress{}; // Cauchy, Pa
+  double energy = 0.0;             // internal, with alpha, J
+  std::vector<double> history;     // as history_of() names it
+};
+
+/// An explicit finite element body with lumped mass. Points are its nodes; arrays of vectors are
+/// [n][dim]. Nodes without mass are inert: they keep their place. The results have the same bits for
+/// any number of threads.
 ///
-///     Engine<2> engine(make_box<2>({.size = …, .count = …}), {.material = …});
+///     Engine<2> engine(make_box<2>({.size = …, .count = …}), {.materials = …});
 ///     engine.start(0.8 * 2.0 / std::sqrt(engine.step_limit().omega2));
-///     for (…) { engine.compute_own_forces(); engine.integrate(); }
+///     for (…) engine.integrate();
+///
+/// With couplings a step is compute_own_forces(), add_interface_forces(), integrate().
 template <int dim> class Engine {
 public:
   /// @throws InputError, std::invalid_argument as its parts do
@@ -57,55 +67,80 @@ public:
   /// velocity with which they are about to move, v^(n+1/2).
   void motion(std::span<const std::uint32_t> nodes, std::span<double> position,
               std::span<double> velocity) const;
-  /// Internal forces at x^n; also takes back the interface forces of the last step.
+  /// Internal forces and loads at x^n; also takes back the interface forces of the last step.
   void compute_own_forces();
-  /// Resultants without the interface forces and the reactions, N.
+  /// Resultants without the interface forces, gravity, damping and the reactions, N.
   void own_forces(std::span<const std::uint32_t> nodes, std::span<double> force) const;
   void add_interface_forces(std::span<const std::uint32_t> nodes, std::span<const double> force);
-  /// From t_n to t_(n+1).
+  /// From t_n to t_(n+1); computes the own forces too unless that was done.
   void integrate();
 
   /// Energies and momentum at the t_n of the last integrate().
   Energies energies() const;
-  Vec<dim> momentum() const;
+  Vec<dim> momentum() const { return sums_.momentum; }
 
   const Mesh<dim>& mesh() const { return mesh_; }
-  const Elements<dim>& elements() const { return elements_; } // those that take part
-  const LinearElastic& material() const { return settings_.material; }
-  std::span<const double> mass() const { return mass_; }                 // [num_nodes] kg
-  std::span<const double> displacement() const { return displacement_; } // u^n, m
-  std::span<const double> velocity() const { return velocity_; }         // v^(n-1/2), m/s
+  const Settings<dim>& settings() const { return settings_; }
+  std::vector<double> mass() const;         // [num_nodes] kg
+  std::vector<double> displacement() const; // [num_nodes][dim] u^n, m
+  std::vector<double> velocity() const;     // [num_nodes][dim] v^(n-1/2), m/s
+  /// Elements that take part, ascending.
+  const std::vector<std::uint32_t>& active_elements() const { return active_; }
+  /// The setting that an element has its material from.
+  std::size_t material_of(std::uint32_t element) const { return material_of_[element]; }
+  /// One that takes part, at the displacements of this moment.
+  ElementState<dim> element_state(std::uint32_t element) const;
   /// The first node whose motion is no longer a finite number.
   std::optional<std::uint32_t> first_non_finite() const;
 
 private:
   friend struct StateParts;
 
-  void move_boundary();
-  Work reaction_work() const;
-  Work interface_work() const;
+  struct Moved { // a prescribed component of a node with mass
+    std::uint32_t row;
+    int component;
+    std::uint32_t node;
+  };
+
+  ElementModel<dim> model_of(std::uint32_t element) const;
+  void assign_materials();
+  void make_groups();
+  StepSettings<dim> step_settings() const;
+  void compute_forces(bool finish);
+  void advance_plain();
+  void advance_special(const Rows<dim>& prescribed);
+  std::vector<double> by_node(const Rows<dim>& rows) const;
 
   Mesh<dim> mesh_;
   Settings<dim> settings_;
   Boundary<dim> boundary_;
+  std::vector<std::uint32_t> material_of_; // [num_elements] setting
 
   // With the weights.
-  Elements<dim> elements_;
-  std::vector<double> mass_;           // [num_nodes]
-  std::vector<double> inverse_mass_;   // [num_nodes][dim]
-  std::vector<double> element_omega2_; // [elements]
-  std::vector<Prescribed> moved_;      // prescribed components of nodes with mass
+  std::vector<double> alpha_; // [num_nodes]; empty: one
+  std::vector<std::uint32_t> active_;
+  Patches patches_;
+  std::vector<GroupKernel> groups_;
+  std::vector<std::uint32_t> group_of_; // [num_elements]
+  std::vector<std::uint32_t> place_;    // [num_elements] in the arrays of the group
+  Rows<dim> reference_;              // of the rows of every patch
+  std::vector<double> mass_;         // [rows]
+  std::vector<Moved> moved_;
 
-  // At t_n; after integrate() also what it was before.
+  // At t_n.
   double time_step_ = 0.0;
   std::int64_t step_ = 0;
-  std::vector<double> displacement_, displacement_before_; // [num_nodes][dim]
-  std::vector<double> velocity_, velocity_before_;         // [num_nodes][dim]
-  std::vector<double> initial_displacement_;               // [moved]
-  std::vector<double> element_force_;                      // [elements][element_nodes][dim]
-  std::vector<double> own_force_, interface_force_;        // [num_nodes][dim]
-  bool has_interface_force_ = false;
-  WorkBook external_work_, interface_work_;
+  Rows<dim> displacement_, velocity_;
+  std::vector<double> initial_displacement_; // [moved]
+  Rows<dim> force_; // own, of special rows; of all, after compute_own_forces()
+  Rows<dim> parts_; // of special rows, what each patch adds
+  bool forces_are_current_ = false;
+  std::vector<std::uint32_t> interface_rows_;
+  Rows<dim> interface_force_; // [rows]; empty until there is one
+  ElementWork element_work_{}; // of all steps
+  std::vector<RowSums<dim>> patch_sums_; // of the plain rows of the last step
+  RowSums<dim> sums_;          // of all rows of the last step
+  WorkBook damped_work_, reaction_work_, gravity_work_, interface_work_;
 };
 
 } // namespace kerf::fem

@@ -1,30 +1,74 @@
 #include "fem_core/integrate.hpp"
 
-#include "fem_core/parallel.hpp"
-
-#include <cstdint>
+#include <cmath>
 
 namespace kerf::fem {
+namespace {
 
-void step_back_half(const Loads& loads, double time_step, std::span<double> velocity) {
-  const auto size = static_cast<std::int64_t>(velocity.size());
-#pragma omp parallel for schedule(static) if (size >= least_parallel_size)
-  for (std::int64_t k = 0; k < size; ++k) {
-    const double a = (loads.own[k] + loads.interface[k]) * loads.inverse_mass[k]; // m/s²
-    velocity[k] -= 0.5 * a * time_step;
+template <int dim, bool special>
+void advance_rows(const StepSettings<dim>& step, std::size_t count, const double* mass,
+                  const double* force, [[maybe_unused]] const double* prescribed, double* velocity,
+                  double* displacement, RowSums<dim>& sums) {
+  constexpr int size = row_size<dim>;
+  const double dt = step.time_step, half = 0.5 * step.mass_damping * dt;
+  double gravity[size] = {};
+  for (int i = 0; i < dim; ++i)
+    gravity[i] = step.gravity[i];
+  double kinetic[size] = {}, momentum[size] = {}, change[size] = {};
+  double lost_before[size] = {}, lost_after[size] = {};
+  for (std::size_t k = 0; k < count; ++k) {
+    const double m = mass[k], of_step = dt / m;
+    for (int i = 0; i < size; ++i) {
+      const std::size_t at = k * size + static_cast<std::size_t>(i);
+      const double f = force[at] + m * gravity[i];
+      double before = velocity[at], after = 0.0;
+      if constexpr (special) {
+        const bool is_free = prescribed == nullptr || std::isnan(prescribed[at]);
+        const double sign = before > 0.0 ? 1.0 : before < 0.0 ? -1.0 : 0.0;
+        const double net = f - step.local_damping * sign * std::abs(f);
+        if (is_free && step.first)
+          before -= 0.5 * of_step * net;
+        after = is_free ? ((1.0 - half) * before + of_step * net) / (1.0 + half) : prescribed[at];
+        const double resisted =
+            is_free ? f - net + step.mass_damping * m * 0.5 * (before + after) : 0.0; // N
+        lost_before[i] += resisted * before;
+        lost_after[i] += resisted * after;
+      } else {
+        if (step.first)
+          before -= 0.5 * of_step * f;
+        after = before + of_step * f;
+      }
+      velocity[at] = after;
+      displacement[at] += dt * after;
+      kinetic[i] += m * before * after;
+      momentum[i] += m * (before + after);
+      change[i] += m * (after - before);
+    }
+  }
+  for (int i = 0; i < dim; ++i) {
+    sums.kinetic += 0.5 * kinetic[i];
+    sums.momentum[i] += 0.5 * momentum[i];
+    sums.damped += {.before = 0.5 * dt * lost_before[i], .after = 0.5 * dt * lost_after[i]};
+    sums.gravity += {.before = 0.25 * dt * gravity[i] * (momentum[i] - change[i]),
+                     .after = 0.25 * dt * gravity[i] * (momentum[i] + change[i])};
   }
 }
 
-void advance(const Loads& loads, double time_step, std::span<const double> velocity,
-             std::span<const double> displacement, std::span<double> next_velocity,
-             std::span<double> next_displacement) {
-  const auto size = static_cast<std::int64_t>(velocity.size());
-#pragma omp parallel for schedule(static) if (size >= least_parallel_size)
-  for (std::int64_t k = 0; k < size; ++k) {
-    const double a = (loads.own[k] + loads.interface[k]) * loads.inverse_mass[k]; // m/s²
-    next_velocity[k] = velocity[k] + a * time_step;
-    next_displacement[k] = displacement[k] + next_velocity[k] * time_step;
-  }
+} // namespace
+
+template <int dim>
+void advance(const StepSettings<dim>& step, std::size_t count, const double* mass,
+             const double* force, const double* prescribed, double* velocity,
+             double* displacement, RowSums<dim>& sums) {
+  if (prescribed != nullptr || step.mass_damping > 0.0 || step.local_damping > 0.0)
+    advance_rows<dim, true>(step, count, mass, force, prescribed, velocity, displacement, sums);
+  else
+    advance_rows<dim, false>(step, count, mass, force, prescribed, velocity, displacement, sums);
 }
+
+template void advance(const StepSettings<2>&, std::size_t, const double*, const double*,
+                      const double*, double*, double*, RowSums<2>&);
+template void advance(const StepSettings<3>&, std::size_t, const double*, const double*,
+                      const double*, double*, double*, RowSums<3>&);
 
 } // namespace kerf::fem

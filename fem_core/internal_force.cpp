@@ -47,7 +47,7 @@ template <int dim> PatchScratch<dim>::PatchScratch(const Patches& patches) {
 
 template <int dim>
 ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
-                          const Motion<dim>& motion, bool wants_energy,
+                          const PatchMotion<dim>& motion, bool wants_energy,
                           PatchScratch<dim>& scratch) {
   constexpr std::size_t size = sizeof(Row<dim>);
   const bool rate = group.kinematics == Kinematics::rate;
@@ -97,6 +97,7 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
       .time_step = motion.time_step,
       .wants_energy = wants_energy,
       .law = group.law,
+      .moduli = group.moduli,
       .constants = group.constants,
       .work = {},
   };
@@ -110,9 +111,9 @@ PatchKernel find_kernel(const KernelKey& key) {
 
 template class PatchScratch<2>;
 template class PatchScratch<3>;
-template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const Motion<2>&,
+template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const PatchMotion<2>&,
                                    bool, PatchScratch<2>&);
-template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const Motion<3>&,
+template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const PatchMotion<3>&,
                                    bool, PatchScratch<3>&);
 
 } // namespace fem

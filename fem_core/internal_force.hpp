@@ -4,6 +4,7 @@
 #include "fem_core/patches.hpp"
 #include "fem_core/rows.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace kerf::fem {
@@ -13,7 +14,10 @@ struct GroupKernel {
   PatchKernel compute = nullptr;
   Kinematics kinematics = Kinematics::small;
   bool increments = false; // the law takes increments of strain, and its stress is stored
-  PointLaw law = {};
+  int points = 1;          // of each element
+  PointLaw law = {.parameters = nullptr, .respond = nullptr, .history = 0, .thickness = -1};
+  std::shared_ptr<const void> parameters; // of the law
+  Moduli moduli = {};
   ElementConstants constants = {};
 
   // Arrays of the group as PatchView has them; empty where there is nothing of the kind.
@@ -22,8 +26,8 @@ struct GroupKernel {
 };
 
 /// Motion of the nodes as the kernels need it.
-template <int dim> struct Motion {
-  const Rows<dim>& reference;    // X, m
+template <int dim> struct PatchMotion {
+  const Rows<dim>& reference;    // [Patches::num_copies()] X of the rows of every patch, m
   const Rows<dim>& displacement; // u^n, m
   const Rows<dim>& velocity;     // v^(n-1/2), m/s
   double time_step;              // from v, s; 0: there was no increment
@@ -42,7 +46,7 @@ public:
 /// @param wants_energy  instead: work.internal is the energy at u; nothing is followed
 template <int dim>
 ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
-                          const Motion<dim>& motion, bool wants_energy, PatchScratch<dim>& scratch);
+                          const PatchMotion<dim>& motion, bool wants_energy, PatchScratch<dim>& scratch);
 
 /// The kernel of this machine's instructions; null when there is none of the kind.
 PatchKernel find_kernel(const KernelKey& key);

@@ -12,7 +12,10 @@ namespace kerf::fem {
 
 /// A vector in a row of its own; in 3D a fourth number fills it, and is zero.
 template <int dim> struct alignas(row_size<dim> * sizeof(double)) Row {
+  static constexpr int SizeAtCompileTime = row_size<dim>; // as a small vector of a State
   double x[row_size<dim>] = {};
+
+  double* data() { return x; }
 };
 
 /// One vector for every row of Patches.
@@ -34,6 +37,8 @@ public:
   void set_zero() { rows_.assign(rows_.size(), {}); }
 
 private:
+  friend struct StateParts;
+
   std::vector<Row<dim>> rows_;
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/vec.hpp"
-#include "fem_core/materials.hpp"
+#include "fem_core/material.hpp"
 
 #include <array>
 #include <optional>
@@ -55,10 +55,22 @@ template <int dim> struct InitialSetting {
   std::optional<InitialPulse> pulse;
 };
 
+/// What the elements of a region, or with their centre in a box, are made of; without either, all.
+/// Where several settings meet, the last one counts.
+template <int dim> struct MaterialSetting {
+  Material material;
+  std::string region;
+  std::optional<Box<dim>> box;
+};
+
 template <int dim> struct Settings {
-  LinearElastic material;
+  std::vector<MaterialSetting<dim>> materials;
+  Plane plane = Plane::strain; // of 2D
   std::vector<BoundarySetting<dim>> boundary;
   std::vector<InitialSetting<dim>> initial;
+  Vec<dim> gravity = Vec<dim>::Zero(); // m/s²
+  double mass_damping = 0.0;           // a of the force -a m v, 1/s
+  double local_damping = 0.0;          // share of the resultant that opposes the motion, 0 to 1
 };
 
 } // namespace kerf::fem

@@ -19,19 +19,39 @@ struct StateParts {
 
   /// Forces are computed anew in every step, and what was before t_n is overwritten.
   template <int dim, class Visit> static void of(Engine<dim>& engine, Visit& visit) {
-    auto& [mesh, settings, boundary, elements, mass, inverse_mass, element_omega2, moved, time_step,
-           step, displacement, displacement_before, velocity, velocity_before, initial_displacement,
-           element_force, own_force, interface_force, has_interface_force, external_work,
-           interface_work] = engine;
+    auto& [mesh, settings, boundary, material_of, alpha, active, patches, groups, group_of, place,
+           reference, mass, moved, time_step, step, displacement, velocity, initial_displacement, force,
+           parts,
+           forces_are_current, interface_rows, interface_force, element_work, patch_sums, sums,
+           damped_work, reaction_work, gravity_work, interface_work] = engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);
-    visit("displacement_before", displacement_before);
     visit("velocity", velocity);
-    visit("velocity_before", velocity_before);
     visit("initial_displacement", initial_displacement);
-    visit("external_work", external_work);
+    visit("groups", groups);
+    visit("element_work", element_work);
+    visit("damped_work", damped_work);
+    visit("reaction_work", reaction_work);
+    visit("gravity_work", gravity_work);
     visit("interface_work", interface_work);
+  }
+  template <class Visit> static void of(GroupKernel& group, Visit& visit) {
+    auto& [compute, kinematics, increments, points, law, parameters, moduli, constants, alpha,
+           length, dilatation, stress, history, hourglass] = group;
+    visit("stress", stress);
+    visit("history", history);
+    visit("hourglass", hourglass);
+  }
+  template <class Visit> static void of(ElementWork& work, Visit& visit) {
+    auto& [internal, dissipated, hourglass, viscous] = work;
+    visit("internal", internal);
+    visit("dissipated", dissipated);
+    visit("hourglass", hourglass);
+    visit("viscous", viscous);
+  }
+  template <int dim, class Visit> static void of(Rows<dim>& rows, Visit& visit) {
+    visit("row", rows.rows_);
   }
 };
 
@@ -49,8 +69,9 @@ template <int dim> std::uint64_t fingerprint(const Mesh<dim>& mesh) {
   const auto add = [&](std::uint64_t word) { sum = (sum ^ word) * 0x100000001b3u; };
   for (const double x : mesh.positions)
     add(std::bit_cast<std::uint64_t>(x));
-  for (const std::uint32_t node : mesh.elements)
-    add(node);
+  for (const Block& block : mesh.blocks)
+    for (const std::uint32_t node : block.nodes)
+      add(node);
   return sum;
 }
 

@@ -104,42 +104,56 @@ KERF_INLINE void add_force(Derivatives<shape>& force, int q, const Tensor<dim>& 
   }
 }
 
-/// Turns a stress by the rotation that an increment of spin makes: R = (1 - W/2)^-1 (1 + W/2), which
-/// is a rotation whatever its size; T. J. R. Hughes and J. Winget, doi:10.1002/nme.1620151210.
+template <int dim> KERF_INLINE Matrix<dim> product(const Matrix<dim>& a, const Matrix<dim>& b) {
+  Matrix<dim> result;
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      Lanes sum = a.m[i][0] * b.m[0][j];
+      for (int k = 1; k < dim; ++k)
+        sum += a.m[i][k] * b.m[k][j];
+      result.m[i][j] = sum;
+    }
+  return result;
+}
+
+/// The rotation that an increment of spin makes: R = (1 - W/2)^-1 (1 + W/2), which is a rotation
+/// whatever its size; T. J. R. Hughes and J. Winget, doi:10.1002/nme.1620151210.
 /// @param g  factor * g is the gradient of the displacement increment in the middle of the step
-template <int dim>
-KERF_INLINE void turn(Tensor<dim>& s, const Matrix<dim>& g, const Lanes& factor) {
+template <int dim> KERF_INLINE Matrix<dim> turn_of(const Matrix<dim>& g, const Lanes& factor) {
   const Lanes quarter = 0.25 * factor; // half the axial vector of W
   if constexpr (dim == 2) {
     const Lanes a = quarter * (g.m[1][0] - g.m[0][1]);
-    const Lanes f = 1.0 / (1.0 + a * a);
+    const Lanes f = inverse(1.0 + a * a);
     const Lanes cosine = (1.0 - a * a) * f, sine = 2.0 * a * f;
-    const Lanes mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
-    const Lanes c2 = cosine * cosine - sine * sine, s2 = 2.0 * cosine * sine;
-    const Lanes turned = c2 * half - s2 * s[3];
-    s[3] = s2 * half + c2 * s[3];
-    s[0] = mean + turned;
-    s[1] = mean - turned;
+    return {{{cosine, -sine}, {sine, cosine}}};
   } else {
     const Lanes x = quarter * (g.m[2][1] - g.m[1][2]);
     const Lanes y = quarter * (g.m[0][2] - g.m[2][0]);
     const Lanes z = quarter * (g.m[1][0] - g.m[0][1]);
-    const Lanes f = 2.0 / (1.0 + x * x + y * y + z * z);
-    const Lanes r[3][3] = {
-        {1.0 - f * (y * y + z * z), f * (x * y - z), f * (x * z + y)},
-        {f * (x * y + z), 1.0 - f * (x * x + z * z), f * (y * z - x)},
-        {f * (x * z - y), f * (y * z + x), 1.0 - f * (x * x + y * y)}};
-    Lanes t[3][3]; // R s
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        t[i][j] = r[i][0] * s[component_of<3>(0, j)] + r[i][1] * s[component_of<3>(1, j)] +
-                  r[i][2] * s[component_of<3>(2, j)];
-    Tensor<3> turned;
-    for (int i = 0; i < 3; ++i)
-      for (int j = i; j < 3; ++j)
-        turned[component_of<3>(i, j)] = t[i][0] * r[j][0] + t[i][1] * r[j][1] + t[i][2] * r[j][2];
-    s = turned;
+    const Lanes f = 2.0 * inverse(1.0 + x * x + y * y + z * z);
+    return {{{1.0 - f * (y * y + z * z), f * (x * y - z), f * (x * z + y)},
+             {f * (x * y + z), 1.0 - f * (x * x + z * z), f * (y * z - x)},
+             {f * (x * z - y), f * (y * z + x), 1.0 - f * (x * x + y * y)}}};
   }
+}
+
+/// R . s . R^T; zz of 2D stays.
+template <int dim> KERF_INLINE void turn(Tensor<dim>& s, const Matrix<dim>& rotation) {
+  const auto& r = rotation.m;
+  Lanes t[dim][dim]; // R s
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      t[i][j] = r[i][0] * s[component_of<dim>(0, j)];
+      for (int k = 1; k < dim; ++k)
+        t[i][j] += r[i][k] * s[component_of<dim>(k, j)];
+    }
+  for (int i = 0; i < dim; ++i)
+    for (int j = i; j < dim; ++j) {
+      Lanes sum = t[i][0] * r[j][0];
+      for (int k = 1; k < dim; ++k)
+        sum += t[i][k] * r[j][k];
+      s[component_of<dim>(i, j)] = sum;
+    }
 }
 
 } // namespace kerf::KERF_ISA

@@ -46,7 +46,8 @@ template <int dim> struct PointForce {
   Matrix<dim> cof;
   Lanes weight; // the force is weight * stress . cof
   Lanes hoop;   // and, of the hoop stress, hoop * N_a
-  Lanes volume; // that the strain acts in, m³
+  Lanes volume; // in the middle of the increment, or of the reference configuration, m³
+  Lanes end;    // at the end of the increment, m³
 };
 
 template <Shape shape, Kinematics kinematics, Space space> struct ElementVector {
@@ -98,7 +99,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
       f.cof = end.cof;
       f.weight = share;
       f.volume = share * middle.det;
-      f.hoop = whole_ring * share * end.det;
+      f.end = share * end.det;
     } else {
       const Jacobian<dim> reference(jX);
       d.gradient = reference.gradient_times_det(jm);
@@ -112,7 +113,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
         f.cof = reference.cof;
         f.weight = share;
       }
-      f.hoop = whole_ring * f.volume;
+      f.end = f.volume;
     }
     d.strain = symmetric(d.gradient, d.factor);
     if constexpr (ring) {
@@ -120,10 +121,12 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
       const Lanes of_strain =
           kinematics == Kinematics::rate ? radius - 0.5 * view.motion_scale * moved : radius;
       d.strain[2] = view.motion_scale * moved / of_strain;
-      f.weight *= whole_ring * radius;
-      f.volume *= whole_ring * of_strain;
+      f.hoop = whole_ring * f.end;
       if constexpr (kinematics == Kinematics::total)
         f.hoop *= radius / (radius + moved);
+      f.weight *= whole_ring * radius;
+      f.volume *= whole_ring * of_strain;
+      f.end *= whole_ring * radius;
     }
   }
 

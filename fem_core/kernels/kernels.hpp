@@ -1,19 +1,9 @@
 // The kernels of one shape.
 #pragma once
 
-#include "fem_core/kernels/response.hpp"
+#include "fem_core/kernels/one_point.hpp"
 
 namespace kerf::KERF_ISA {
-
-using fem::Formulation;
-using fem::PatchKernel;
-
-KERF_INLINE void book(const WorkLanes& work, PatchView& view) {
-  view.work.internal += total(work.internal);
-  view.work.dissipated += total(work.dissipated);
-  view.work.hourglass += total(work.hourglass);
-  view.work.viscous += total(work.viscous);
-}
 
 /// Full integration.
 template <Shape shape, Kinematics kinematics, Space space, class Response>
@@ -52,17 +42,17 @@ void mean_dilatation_kernel(PatchView& patch) {
       dilatation += f[q].volume * trace(d[q].strain);
     }
     dilatation /= volume;
-    Lanes weight{}, pressure{};
+    Lanes end{}, pressure{};
     Tensor<dim> stress[points];
     for (int q = 0; q < points; ++q) {
       const Lanes missing = (1.0 / 3.0) * (dilatation - trace(d[q].strain));
       for (int k = 0; k < 3; ++k)
         d[q].strain[k] += missing;
       stress[q] = Response::stress(e, q, d[q], f[q], work);
-      weight += f[q].volume;
-      pressure += f[q].volume * trace(stress[q]);
+      end += f[q].end;
+      pressure += f[q].end * trace(stress[q]);
     }
-    pressure /= weight;
+    pressure /= end;
     for (int q = 0; q < points; ++q) {
       const Lanes missing = (1.0 / 3.0) * (pressure - trace(stress[q]));
       for (int k = 0; k < 3; ++k)

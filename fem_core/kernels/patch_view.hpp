@@ -1,6 +1,7 @@
 // What the kernels of the internal forces see of a patch of elements: pointers and plain numbers.
 #pragma once
 
+#include "fem_core/laws/moduli.hpp"
 #include "fem_core/shape.hpp"
 
 #include <cstddef>
@@ -37,14 +38,13 @@ struct PointLaw {
   const void* parameters;
   void (*respond)(); // a LawCall<dim> of the set of instructions that is in use
   int history;       // numbers a point besides the stress
+  int thickness;     // which of them is the strain through a thickness that changes; -1: none
 };
 
-/// Bulk viscosity, hourglass control and so on: constants of all elements of a material.
+/// Constants of all elements of a material.
 struct ElementConstants {
-  double lambda, mu;       // of the inlined laws: linear elastic (small), neo-Hookean (total), Pa
-  double hourglass;        // stiffness times length, Pa; one_point
-  double hourglass_damper; // Pa s; one_point
-  double linear_viscosity, quadratic_viscosity; // of the bulk, as pressures: see bulk_pressure()
+  double hourglass; // stiffness against hourglass modes, as stiffness_of() has it, Pa
+  double linear_viscosity, quadratic_viscosity; // of the bulk
 };
 
 /// Work of a step, added up over a patch, J.
@@ -67,17 +67,26 @@ struct PatchView {
   const double* alpha;        // [batches][points][batch_size] share; null: one everywhere
   const double* length;       // [batches][batch_size] of the elements, for bulk viscosity, m
   const double* dilatation;   // [batches][batch_size] averaged over nodes, of nodal_pressure
-  double* stress;             // [batches][points][components][batch_size], Pa; of increments
+  double* stress;             // [batches][points][components][batch_size], Pa; null: not stored
   double* history;            // [batches][points][law.history][batch_size]
   double* hourglass;          // [batches][modes][dim][batch_size] forces of Kinematics::rate, N
   double time_step;           // of the increment, s; 0: none has been
   bool wants_energy;          // of laws of total strain
   PointLaw law;
+  Moduli moduli; // of linear elasticity in small strain
   ElementConstants constants;
   ElementWork work; // is added to
 };
 
 using PatchKernel = void (*)(PatchView&);
+
+/// How the kernels get at the law.
+enum class Response : std::uint8_t {
+  elastic,      // Kinematics::small, PatchView::moduli
+  hyperelastic, // Kinematics::total; parameters are a NeoHookean, or one in plane stress
+  hyperelastic_plane_stress,
+  called,
+};
 
 /// Which kernel.
 struct KernelKey {
@@ -85,7 +94,15 @@ struct KernelKey {
   Formulation formulation;
   Kinematics kinematics;
   Space space;
-  bool called_law; // not one of the inlined laws
+  Response response;
+};
+
+/// Which function a called law is. They are in the order of the variant fem::Law.
+struct LawKey {
+  std::size_t law;
+  int dim;
+  bool plane_stress;
+  bool increments;
 };
 
 } // namespace kerf::fem

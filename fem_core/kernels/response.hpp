@@ -2,6 +2,8 @@
 #pragma once
 
 #include "fem_core/kernels/element_vector.hpp"
+#include "fem_core/laws/gradient.hpp"
+#include "fem_core/laws/lane_math.hpp"
 
 namespace kerf::KERF_ISA {
 
@@ -29,21 +31,47 @@ KERF_INLINE Lanes only(const Lanes& x, int count) {
   return result;
 }
 
-/// Isotropic and linear, small strain: lambda tr(eps) 1 + 2 mu eps.
+KERF_INLINE void book(const WorkLanes& work, PatchView& view) {
+  view.work.internal += total(work.internal);
+  view.work.dissipated += total(work.dissipated);
+  view.work.hourglass += total(work.hourglass);
+  view.work.viscous += total(work.viscous);
+}
+
+/// Isotropic and linear, small strain.
 struct ElasticResponse {
   template <class Elements, int dim>
   KERF_INLINE static Tensor<dim> stress(const Elements& e, int, Deformation<dim>& d,
-                                        const PointForce<dim>& f, WorkLanes& work) {
-    const Lanes pressure = e.view.constants.lambda * trace(d.strain);
-    const double twice_mu = 2.0 * e.view.constants.mu;
-    Tensor<dim> s;
-    for (int k = 0; k < Tensor<dim>::size; ++k)
-      s[k] = twice_mu * d.strain[k];
-    for (int k = 0; k < 3; ++k)
-      s[k] += pressure;
+                                        PointForce<dim>& f, WorkLanes& work) {
+    const Tensor<dim> stress = e.view.moduli.stress(d.strain);
     if (e.view.wants_energy)
-      work.internal += only(0.5 * f.volume * contract(s, d.strain), e.count);
-    return s;
+      work.internal += only(0.5 * f.volume * contract(stress, d.strain), e.count);
+    return stress;
+  }
+};
+
+KERF_INLINE fem::Gradient<Lanes, 2> gradient_of(const Deformation<2>& d) {
+  const auto& g = d.gradient.m;
+  return {d.factor * g[0][0], d.factor * g[0][1], d.factor * g[1][0], d.factor * g[1][1],
+          d.strain[2]};
+}
+KERF_INLINE fem::Gradient<Lanes, 3> gradient_of(const Deformation<3>& d) {
+  const auto& g = d.gradient.m;
+  return {d.factor * g[0][0], d.factor * g[0][1], d.factor * g[0][2],
+          d.factor * g[1][0], d.factor * g[1][1], d.factor * g[1][2],
+          d.factor * g[2][0], d.factor * g[2][1], d.factor * g[2][2]};
+}
+
+/// A law of the deformation gradient; gives the Kirchhoff stress.
+template <class Law> struct HyperelasticResponse {
+  template <class Elements, int dim>
+  KERF_INLINE static Tensor<dim> stress(const Elements& e, int, Deformation<dim>& d,
+                                        PointForce<dim>& f, WorkLanes& work) {
+    const auto& law = *static_cast<const Law*>(e.view.law.parameters);
+    const auto H = gradient_of(d);
+    if (e.view.wants_energy)
+      work.internal += only(f.volume * law.template energy_density<LaneMath, dim>(H), e.count);
+    return law.template kirchhoff<LaneMath, dim>(H);
   }
 };
 
@@ -51,32 +79,40 @@ struct ElasticResponse {
 template <Kinematics kinematics> struct CalledResponse {
   template <class Elements, int dim>
   KERF_INLINE static Tensor<dim> stress(const Elements& e, int q, Deformation<dim>& d,
-                                        const PointForce<dim>& f, WorkLanes& work) {
+                                        PointForce<dim>& f, WorkLanes& work) {
     constexpr int size = Tensor<dim>::size;
     const PatchView& view = e.view;
     LawPoint<dim> point;
     point.strain = d.strain;
     point.time_step = view.time_step;
     point.history = view.history + e.at(q, view.law.history);
-    double* const stored = view.stress == nullptr ? nullptr : view.stress + e.at(q, size);
-    Tensor<dim> before;
-    for (int k = 0; k < size; ++k)
-      before[k] = stored == nullptr ? Lanes{} : load(stored + k * batch_size);
-    if constexpr (kinematics == Kinematics::rate)
-      turn<dim>(before, d.gradient, d.factor);
-    point.stress = before;
-    point.dissipated = Lanes{};
-    reinterpret_cast<LawCall<dim>>(view.law.respond)(view.law.parameters, point);
-    if (view.wants_energy)
-      work.internal += only(0.5 * f.volume * contract(point.stress, d.strain), e.count);
-    else if (stored != nullptr) {
-      for (int k = 0; k < size; ++k) {
-        store(stored + k * batch_size, point.stress[k]);
-        before[k] += point.stress[k];
-      }
-      work.internal += only(0.5 * f.volume * contract(before, d.strain), e.count);
-      work.dissipated += only(f.volume * point.dissipated, e.count);
+    if (view.stress == nullptr) {
+      reinterpret_cast<LawCall<dim>>(view.law.respond)(view.law.parameters, point);
+      if (view.wants_energy)
+        work.internal += only(0.5 * f.volume * contract(point.stress, d.strain), e.count);
+      return point.stress;
     }
+    double* const stored = view.stress + e.at(q, size);
+    Tensor<dim> mean;
+    for (int k = 0; k < size; ++k)
+      mean[k] = load(stored + k * batch_size);
+    if constexpr (kinematics == Kinematics::rate)
+      turn<dim>(mean, turn_of<dim>(d.gradient, d.factor));
+    point.stress = mean;
+    reinterpret_cast<LawCall<dim>>(view.law.respond)(view.law.parameters, point);
+    for (int k = 0; k < size; ++k) {
+      store(stored + k * batch_size, point.stress[k]);
+      mean[k] = 0.5 * (mean[k] + point.stress[k]);
+    }
+    if constexpr (kinematics == Kinematics::rate && dim == 2)
+      if (view.law.thickness >= 0) { // of plane stress, the strain through it comes last
+        const Lanes thickness =
+            LaneMath::exponential(load(point.history + view.law.thickness * batch_size));
+        f.weight *= thickness;
+        f.volume *= thickness;
+      }
+    work.internal += only(f.volume * contract(mean, d.strain), e.count);
+    work.dissipated += only(f.volume * point.dissipated, e.count);
     return point.stress;
   }
 };

@@ -2,5 +2,5 @@
 #include "fem_core/kernels/kernel_table.hpp"
 
 namespace kerf::KERF_ISA {
-template PatchKernel kernel_of_shape<Shape::tet4>(const fem::KernelKey&);
+template PatchKernel kernel_of_shape<Shape::tet4>(const KernelKey&);
 }

@@ -2,5 +2,5 @@
 #include "fem_core/kernels/kernel_table.hpp"
 
 namespace kerf::KERF_ISA {
-template PatchKernel kernel_of_shape<Shape::tri3>(const fem::KernelKey&);
+template PatchKernel kernel_of_shape<Shape::tri3>(const KernelKey&);
 }

@@ -1,0 +1,166 @@
+#include "fem_core/material.hpp"
+
+#include "common/instruction_set.hpp"
+#include "fem_core/input_error.hpp"
+#include "fem_core/laws/plane_stress.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <type_traits>
+
+namespace kerf {
+
+namespace baseline {
+void (*law_call(const fem::LawKey&))();
+}
+namespace avx2 {
+void (*law_call(const fem::LawKey&))();
+}
+namespace avx512 {
+void (*law_call(const fem::LawKey&))();
+}
+
+namespace fem {
+namespace {
+
+Kinematics kinematics_of(const Material& material) {
+  if (std::holds_alternative<NeoHookean>(material.law))
+    return Kinematics::total;
+  return material.finite_strain ? Kinematics::rate : Kinematics::small;
+}
+
+int num_points(Shape shape, Formulation formulation) {
+  if (formulation == Formulation::one_point || shape == Shape::tri3 || shape == Shape::tet4)
+    return 1;
+  return shape == Shape::quad4 ? 4 : 8;
+}
+
+/// A law as the kernels use it: in plane stress as one of its own.
+template <class Use> auto with_law(const Material& material, Plane plane, Use use) {
+  return std::visit(
+      [&](const auto& law) {
+        using LawType = std::decay_t<decltype(law)>;
+        if (plane == Plane::stress)
+          return use(PlaneStress<LawType>(law));
+        return use(law);
+      },
+      material.law);
+}
+
+std::string name_of(Formulation formulation) {
+  return std::array{"full", "mean_dilatation", "one_point",
+                    "nodal_pressure"}[static_cast<std::size_t>(formulation)];
+}
+
+} // namespace
+
+double Material::density() const {
+  return std::visit([](const auto& law) { return law.density; }, law);
+}
+
+Moduli Material::bound() const {
+  return std::visit([](const auto& law) { return law.bound(); }, law);
+}
+
+void check(const Material& material, Shape shape, Plane plane) {
+  const bool simplex = shape == Shape::tri3 || shape == Shape::tet4;
+  const Formulation formulation = material.formulation;
+  const std::string name = name_of(formulation);
+  if (simplex && (formulation == Formulation::mean_dilatation ||
+                  formulation == Formulation::one_point))
+    throw InputError("formulation",
+                     fmt::format("{} is of quad4 and hex8; {} has full or nodal_pressure", name,
+                                 fem::name_of(shape)));
+  if (!simplex && formulation == Formulation::nodal_pressure)
+    throw InputError("formulation", fmt::format("{} is of tri3 and tet4; {} has full, "
+                                                "mean_dilatation or one_point",
+                                                name, fem::name_of(shape)));
+  if (formulation == Formulation::one_point && plane == Plane::axisymmetric)
+    throw InputError("formulation", "one_point is not there for axisymmetry; take full or "
+                                    "mean_dilatation");
+  if (plane == Plane::stress && formulation != Formulation::full &&
+      formulation != Formulation::one_point)
+    throw InputError("formulation", fmt::format("{} has no meaning in plane stress, where nothing "
+                                                "locks; take full or one_point",
+                                                name));
+  if (std::holds_alternative<NeoHookean>(material.law) &&
+      (formulation == Formulation::mean_dilatation || formulation == Formulation::nodal_pressure))
+    throw InputError("formulation",
+                     fmt::format("neo_hookean has full or one_point, not {}", name));
+}
+
+GroupKernel make_group(const Material& material, Shape shape, Plane plane,
+                       std::span<const double> lengths) {
+  GroupKernel group;
+  group.kinematics = kinematics_of(material);
+  KernelKey key{.shape = shape,
+                .formulation = material.formulation,
+                .kinematics = group.kinematics,
+                .space = plane == Plane::axisymmetric ? Space::axisymmetric : Space::plane,
+                .response = Response::called};
+  const auto size = static_cast<std::size_t>(dimension_of(shape) == 2 ? 4 : 6);
+  const auto points = static_cast<std::size_t>(num_points(shape, material.formulation));
+  with_law(material, plane, [&](const auto& law) {
+    using LawType = std::decay_t<decltype(law)>;
+    group.parameters = std::make_shared<const LawType>(law);
+    group.law.parameters = group.parameters.get();
+    if constexpr (std::is_base_of_v<NeoHookean, LawType>) {
+      key.response = plane == Plane::stress ? Response::hyperelastic_plane_stress
+                                            : Response::hyperelastic;
+    } else {
+      constexpr bool linear = LinearLaw<LawType>;
+      group.increments = material.finite_strain || !linear;
+      if constexpr (std::is_base_of_v<IsotropicElastic, LawType>)
+        if (!group.increments) {
+          key.response = Response::elastic;
+          group.moduli = law.moduli;
+          if (plane == Plane::stress) // of the three-dimensional law where sigma zz vanishes
+            group.moduli.lambda *= 2.0 * law.moduli.mu / law.moduli.uniaxial();
+        }
+      group.law.history = group.increments ? LawType::history : 0;
+      if (material.finite_strain && plane == Plane::stress)
+        group.law.thickness = LawType::history - 1;
+      if (group.increments) {
+        group.stress.assign(lengths.size() * points * size, 0.0);
+        group.history.resize(lengths.size() * points * LawType::history);
+        for (std::size_t e = 0; e < lengths.size(); ++e) {
+          const auto initial = law.initial_history(lengths[e]);
+          for (std::size_t q = 0; q < points; ++q)
+            for (std::size_t k = 0; k < initial.size(); ++k)
+              group.history[((e / batch_size * points + q) * initial.size() + k) * batch_size +
+                            e % batch_size] = initial[k];
+        }
+      }
+    }
+  });
+  group.law.respond = dispatch(baseline::law_call, avx2::law_call, avx512::law_call)(
+      {.law = material.law.index(),
+       .dim = dimension_of(shape),
+       .plane_stress = plane == Plane::stress,
+       .increments = group.increments});
+  group.compute = find_kernel(key);
+  group.points = static_cast<int>(points);
+  if (material.formulation == Formulation::one_point) {
+    group.constants.hourglass = material.hourglass_stiffness * material.bound().uniaxial();
+    if (group.increments)
+      group.hourglass.assign(lengths.size() * (shape == Shape::quad4 ? 2 : 12), 0.0);
+  }
+  return group;
+}
+
+std::vector<HistoryValue> history_of(const Material& material, Plane plane) {
+  return with_law(material, plane, [&](const auto& law) {
+    using LawType = std::decay_t<decltype(law)>;
+    std::vector<HistoryValue> values;
+    if constexpr (!std::is_base_of_v<NeoHookean, LawType>)
+      for (int k = 0; k < LawType::history; ++k)
+        values.push_back({LawType::history_names[static_cast<std::size_t>(k)],
+                          LawType::history_units[static_cast<std::size_t>(k)]});
+    return values;
+  });
+}
+
+} // namespace fem
+} // namespace kerf

@@ -1,0 +1,54 @@
+// What a region of the body is made of, and how its elements take the strain.
+#pragma once
+
+#include "fem_core/internal_force.hpp"
+#include "fem_core/laws/drucker_prager.hpp"
+#include "fem_core/laws/isotropic_damage.hpp"
+#include "fem_core/laws/isotropic_elastic.hpp"
+#include "fem_core/laws/j2_plastic.hpp"
+#include "fem_core/laws/neo_hookean.hpp"
+#include "fem_core/laws/transversely_isotropic.hpp"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace kerf::fem {
+
+/// In the order of LawKey.
+using Law = std::variant<IsotropicElastic, TransverselyIsotropic, NeoHookean, J2Plastic,
+                         DruckerPrager, IsotropicDamage>;
+
+/// What 2D means.
+enum class Plane : std::uint8_t { strain, stress, axisymmetric };
+
+struct Material {
+  Law law;
+  /// Strain on the current configuration with an objective stress rate, or, of a hyperelastic law,
+  /// from the deformation gradient. Otherwise strain is small.
+  bool finite_strain = false;
+  Formulation formulation = Formulation::full;
+  double hourglass_stiffness = 0.1; // of one_point, as a share of about that of full integration
+  double linear_viscosity = 0.0;    // of the bulk
+  double quadratic_viscosity = 0.0;
+
+  double density() const;
+  /// Of an isotropic solid that is at least as stiff, Pa.
+  Moduli bound() const;
+};
+
+/// @throws InputError for what cannot be used together, with a key inside the material
+void check(const Material& material, Shape shape, Plane plane);
+
+/// The kernel of the elements of a material and its arrays, all at their start.
+/// @param lengths  [batches][batch_size] characteristic length of each element, m
+GroupKernel make_group(const Material& material, Shape shape, Plane plane,
+                       std::span<const double> lengths);
+
+/// Names and units of the history that the law keeps at a point.
+struct HistoryValue {
+  std::string name, unit;
+};
+std::vector<HistoryValue> history_of(const Material& material, Plane plane);
+
+} // namespace kerf::fem
