@@ -10,6 +10,7 @@
 #include "tests/unit/fem_mesh_checks.hpp"
 
 #include <gmsh.h>
+#include <omp.h>
 
 #include <cstdio>
 #include <fstream>
@@ -300,6 +301,13 @@ TEST_F(MeshFileTest, is_the_same_mesh_every_time) {
   const Mesh<2> second = read_mesh_file<2>({.path = path, .element_size = 3.0});
   EXPECT_EQ(first.positions, second.positions);
   EXPECT_EQ(first.blocks[0].nodes, second.blocks[0].nodes);
+}
+
+TEST_F(MeshFileTest, leaves_the_number_of_threads_as_it_was) {
+  omp_set_num_threads(3);
+  read_mesh_file<2>({.path = written("disc.geo", disc_geometry), .element_size = 10.0});
+  EXPECT_EQ(omp_get_max_threads(), 3);
+  omp_set_num_threads(1);
 }
 
 class BadMeshFile : public MeshFileTest {
