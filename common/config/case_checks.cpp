@@ -59,6 +59,7 @@ private:
       if (!participant["mass_scaling"].is_null())
         check_mass_scaling(key, participant);
     } else {
+      check_mesh(key + ".mesh", participant["mesh"], settings_["case"], problems_);
       check_elastic(key + ".material", participant["material"]);
     }
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)

@@ -25,6 +25,12 @@ void check_settings(nlohmann::json& settings, const Document& document, Problems
 void check_materials(const std::string& participant, const nlohmann::json& table,
                      Problems& problems);
 
+/// The part of check_settings() about the mesh of one participant.
+/// @param key            "participants.far.mesh"
+/// @param case_settings  the table [case]
+void check_mesh(const std::string& key, const nlohmann::json& mesh,
+                const nlohmann::json& case_settings, Problems& problems);
+
 /// The part of check_settings() about stages, stop conditions and the end of the run.
 void check_stages(const nlohmann::json& settings, Problems& problems);
 

@@ -144,19 +144,10 @@ std::vector<Key> mass_scaling_keys() {
   };
 }
 
-std::vector<Key> model_of_mesh() {
+std::vector<Key> solid_keys() {
   using enum Type;
   const Range poisson{.least = -1.0, .most = 0.5, .without_least = true, .without_most = true};
   return {
-      {"participants.*.mesh", "fem", table, "", tables, anything, "mesh", "the elements"},
-      {"participants.*.mesh.type", "fem", text, "", R"("box")", one_of({"box"}), R"("box")",
-       "the kind of mesh: box is structured, with the tags left, right, bottom, top, back, front"},
-      {"participants.*.mesh.origin", "fem", vector, "m", required, anything, "[0.06975, 0.0]",
-       "the lower corner"},
-      {"participants.*.mesh.size", "fem", vector, "m", required, in(above_zero),
-       "[0.08, 0.006928203230275509]", "the length of each side"},
-      {"participants.*.mesh.count", "fem", counts, "", required, in(from_one), "[80, 7]",
-       "the number of elements along each axis"},
       {"participants.*.material", "fem", table, "", tables, anything, "material",
        "the solid: exactly one pair of young_modulus with poisson_ratio, or C11 with C12"},
       {"participants.*.material.model", "fem", text, "", R"("linear_elastic")",
@@ -252,7 +243,7 @@ std::vector<Key> particle_keys() {
 }
 
 std::vector<Key> mesh_keys() {
-  return joined({participant_keys("fem"), model_of_mesh(), motion_keys("fem")});
+  return joined({participant_keys("fem"), element_keys(), solid_keys(), motion_keys("fem")});
 }
 
 } // namespace kerf::config

@@ -32,6 +32,8 @@ inline constexpr bool live = true; // see Key::live
 /// The keys of "participants.*" of one kind.
 std::vector<Key> particle_keys();
 std::vector<Key> mesh_keys();
+/// Those of its elements.
+std::vector<Key> element_keys();
 /// Those of its materials; of particles only.
 std::vector<Key> material_keys();
 /// Those of its rigid tools; of particles only.

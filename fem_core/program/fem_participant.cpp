@@ -5,6 +5,7 @@
 #include "fem_core/engine.hpp"
 #include "fem_core/input_error.hpp"
 #include "fem_core/program/output.hpp"
+#include "fem_core/program/read_mesh.hpp"
 #include "fem_core/program/read_settings.hpp"
 
 #include <omp.h>

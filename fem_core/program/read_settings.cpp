@@ -117,29 +117,6 @@ template <int dim> InitialSetting<dim> read_initial(const Table& table) {
 
 } // namespace
 
-template <int dim> Period<dim> read_period(const Table& case_settings) {
-  Period<dim> period;
-  if (!case_settings.has("periodic"))
-    return period;
-  const Table periodic = case_settings.table("periodic");
-  for (int axis = 0; axis < dim; ++axis)
-    if (const std::string name(1, "xyz"[axis]); periodic.has(name)) {
-      const std::vector<double> ends = periodic.numbers(name, 2);
-      period.length[axis] = ends[1] - ends[0];
-    }
-  return period;
-}
-
-template <int dim> Mesh<dim> read_mesh(const Table& participant, const Period<dim>& period) {
-  const Table mesh = participant.table("mesh");
-  if (const std::string type = mesh.text("type"); type != "box")
-    throw SettingsError(mesh.path("type"), fmt::format("\"{}\" must be box", type));
-  BoxMesh<dim> box{.origin = mesh.vector<dim>("origin"), .size = mesh.vector<dim>("size")};
-  const std::vector<std::uint64_t> count = mesh.counts("count", dim);
-  std::copy(count.begin(), count.end(), box.count.begin());
-  return make_box(box, period);
-}
-
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh) {
   Settings<dim> settings;
   settings.material = read_material(participant.table("material"), dim);
@@ -159,10 +136,6 @@ std::optional<int> read_threads(const Table& participant) {
   return static_cast<int>(threads);
 }
 
-template Period<2> read_period<2>(const Table&);
-template Period<3> read_period<3>(const Table&);
-template Mesh<2> read_mesh<2>(const Table&, const Period<2>&);
-template Mesh<3> read_mesh<3>(const Table&, const Period<3>&);
 template Settings<2> read_settings<2>(const Table&, const Mesh<2>&);
 template Settings<3> read_settings<3>(const Table&, const Mesh<3>&);
 

@@ -1,4 +1,4 @@
-// Turns the settings that a participant is given into a mesh and the settings of the engine.
+// Turns the settings that a participant is given into those of the engine.
 #pragma once
 
 #include "fem_core/mesh.hpp"
@@ -8,13 +8,6 @@
 #include <optional>
 
 namespace kerf::fem {
-
-/// The period of the case, from its table [case].
-template <int dim> Period<dim> read_period(const Table& case_settings);
-
-/// The mesh of a participant.
-/// @throws coupler::SettingsError
-template <int dim> Mesh<dim> read_mesh(const Table& participant, const Period<dim>& period);
 
 /// Everything besides the mesh, whose tags the boundaries must know.
 /// @throws coupler::SettingsError

@@ -61,6 +61,10 @@ double Table::number(const std::string& key, double otherwise) const {
   return has(key) ? number(key) : otherwise;
 }
 
+bool Table::flag(const std::string& key, bool otherwise) const {
+  return has(key) ? get<bool>(key, "true or false") : otherwise;
+}
+
 std::uint64_t Table::count(const std::string& key) const {
   const auto value = get<std::int64_t>(key, "a positive integer");
   if (value <= 0)

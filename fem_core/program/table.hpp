@@ -31,6 +31,7 @@ public:
 
   double number(const std::string& key) const;
   double number(const std::string& key, double otherwise) const;
+  bool flag(const std::string& key, bool otherwise) const;
   std::uint64_t count(const std::string& key) const;
   std::string text(const std::string& key) const;
   std::vector<std::string> texts(const std::string& key) const;

@@ -2,6 +2,7 @@
 #include "fem_core/program/read_settings.hpp"
 
 #include "fem_core/input_error.hpp"
+#include "fem_core/program/read_mesh.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
