@@ -11,6 +11,9 @@ namespace kerf::fem {
 /// @see Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed. (2008),
 ///      eqs 6.27-6.30
 struct NeoHookean {
+  static constexpr int history = 0;
+  static constexpr std::array<const char*, history> history_names{}, history_units{};
+
   double density = 0.0; // of the reference configuration, kg/m³
   Moduli moduli;        // of small strains
 
@@ -21,6 +24,8 @@ struct NeoHookean {
   /// Moduli of the tangent of the Kirchhoff stress, {lambda, mu - lambda ln J}, at their stiffest
   /// where no volume is below `least_J` of its own: 1 for small strains.
   Moduli bound(double least_J = 1.0) const;
+
+  std::array<double, history> initial_history(double /*length*/) const { return {}; }
 
   /// Kirchhoff stress tau = mu (b - 1) + lambda ln J 1, Pa of the reference volume. NaN for J <= 0.
   template <class Math, int dim>
