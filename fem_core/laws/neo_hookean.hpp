@@ -9,7 +9,7 @@ namespace kerf::fem {
 /// psi = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)². Everything is formed from H = F - 1 without
 /// cancellation: a tiny strain keeps its digits.
 /// @see Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed. (2008),
-///      eqs 6.27-6.30
+///      section 6.4.3
 struct NeoHookean {
   static constexpr int history = 0;
   static constexpr std::array<const char*, history> history_names{}, history_units{};
