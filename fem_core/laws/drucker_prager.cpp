@@ -16,7 +16,7 @@ struct Cone {
   double eta, xi;
 };
 
-/// de Souza Neto et al. (2008), eqs 6.122-6.126
+/// de Souza Neto et al. (2008), section 6.4.4
 Cone cone(DruckerPrager::Fit fit, double angle) {
   const double sine = std::sin(angle), cosine = std::cos(angle);
   if (fit == DruckerPrager::Fit::plane_strain) {

@@ -32,6 +32,9 @@ struct Hardening {
   /// @throws InputError otherwise, or when the sizes differ or are not from 1 to 32
   static Hardening table(std::span<const double> strain, std::span<const double> stress);
 
+  /// Whether sigma_y is one straight line.
+  [[gnu::always_inline]] bool straight() const { return points == 0 && saturation == 0.0; }
+
   /// sigma_y at p, Pa, and its derivative.
   template <class Math>
   [[gnu::always_inline]] void evaluate(const typename Math::Number& p, typename Math::Number& yield,

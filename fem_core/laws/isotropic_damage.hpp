@@ -51,8 +51,7 @@ struct IsotropicDamage {
 
   /// @param stress   Pa; at the start, turned with the material, and at the end
   /// @param kept  the history: as initial_history() made it
-  /// @returns elastic energy that the damage released, by the trapezoidal rule, J/m³; never
-  /// negative
+  /// @returns elastic energy that damage released, by the trapezoidal rule, J/m³; never negative
   template <class Math, int dim>
   [[gnu::always_inline]] typename Math::Number
   update(Symmetric<typename Math::Number, dim>& stress, typename Math::Number* kept,

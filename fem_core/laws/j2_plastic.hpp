@@ -9,7 +9,7 @@ namespace kerf::fem {
 /// q = sqrt(3/2 s : s) <= sigma_y(p) (1 + (dp/dt / D)^(1/q)), associated flow, radial return with
 /// the values at the end of the increment.
 /// @see Simo & Hughes, Computational Inelasticity (1998), box 3.1; de Souza Neto, Perić & Owen,
-///      Computational Methods for Plasticity (2008), box 7.4 (rates: section 11.5)
+///      Computational Methods for Plasticity (2008), chapters 7 and 11
 struct J2Plastic {
   static constexpr int history = 1;
   static constexpr std::array<const char*, history> history_names{"equivalent_plastic_strain"};
@@ -69,6 +69,8 @@ private:
     hardening.evaluate<Math>(p, yield, tangent);
     const Number excess = q - yield;
     Number low{}, high = excess / (stiffness * S), x = excess / (stiffness + tangent);
+    if (!rated && hardening.straight())
+      return x;
     if (rated) { // both parts of the bracket hold; each alone makes up the excess
       high = Math::smaller(n == 1.0 ? high : Math::power(high, 1.0 / n), excess / yield);
       x = high;

@@ -9,8 +9,11 @@ namespace kerf::fem {
 /// psi = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)². Everything is formed from H = F - 1 without
 /// cancellation: a tiny strain keeps its digits.
 /// @see Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed. (2008),
-///      eqs 6.27-6.30
+///      section 6.4.3
 struct NeoHookean {
+  static constexpr int history = 0;
+  static constexpr std::array<const char*, history> history_names{}, history_units{};
+
   double density = 0.0; // of the reference configuration, kg/m³
   Moduli moduli;        // of small strains
 
@@ -21,6 +24,8 @@ struct NeoHookean {
   /// Moduli of the tangent of the Kirchhoff stress, {lambda, mu - lambda ln J}, at their stiffest
   /// where no volume is below `least_J` of its own: 1 for small strains.
   Moduli bound(double least_J = 1.0) const;
+
+  std::array<double, history> initial_history(double /*length*/) const { return {}; }
 
   /// Kirchhoff stress tau = mu (b - 1) + lambda ln J 1, Pa of the reference volume. NaN for J <= 0.
   template <class Math, int dim>

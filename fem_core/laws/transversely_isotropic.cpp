@@ -71,8 +71,9 @@ Moduli TransverselyIsotropic::bound() const {
   const double C33 = lambda + 2.0 * alpha + 4.0 * mu_n - 2.0 * mu_p + beta;
   const double least_mu = std::max({mu_p, mu_n, (in_plane + 2.0 * C33 - 4.0 * C13) / 6.0});
   Moduli best{.lambda = std::numeric_limits<double>::infinity(), .mu = least_mu};
-  for (double more = 1e-7; more < 10.0; more *= 1.2) {
-    const double mu = least_mu * (1.0 + more), a = 2.0 * mu - in_plane, b = 2.0 * mu - C33;
+  for (int k = 0; k < 100; ++k) {
+    const double mu = least_mu * (1.0 + 1e-7 * std::pow(1.2, k)), a = 2.0 * mu - in_plane,
+                 b = 2.0 * mu - C33;
     const double root = (2.0 * C13 * C13 - a * b) / (a + 2.0 * b + 4.0 * C13);
     const Moduli tried{.lambda = std::max({root, -0.5 * a, -b}), .mu = mu};
     if (tried.uniaxial() < best.uniaxial())

@@ -28,7 +28,7 @@ inline fem::IsotropicElastic rock() {
 inline double degrees(double angle) {
   return angle * std::numbers::pi / 180.0;
 }
-inline fem::DruckerPrager::Parameters sandstone() { // c in Pa
+inline fem::DruckerPrager::Parameters sandstone() {
   return {.cohesion = 10e6, .friction_angle = degrees(30.0), .dilation_angle = degrees(10.0)};
 }
 inline fem::IsotropicDamage brittle_rock() {

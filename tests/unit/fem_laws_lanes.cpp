@@ -49,12 +49,7 @@ concept Hyperelastic = requires(const Law& law, const fem::Gradient<double, 2>& 
 template <class Law, int dim> struct Points {
   static constexpr int count = 64, stresses = dim == 2 ? 4 : 6;
   static constexpr int inputs = !Hyperelastic<Law> ? stresses : dim == 2 ? 5 : 9;
-  static constexpr int histories = [] {
-    if constexpr (Hyperelastic<Law>)
-      return 0;
-    else
-      return Law::history;
-  }();
+  static constexpr int histories = Law::history;
 
   std::vector<double> stress = std::vector<double>(stresses * count);
   std::vector<double> history = std::vector<double>(histories * count);
@@ -63,10 +58,9 @@ template <class Law, int dim> struct Points {
   double time_step = 1e-5; // s
 
   explicit Points(const Law& law) {
-    if constexpr (histories > 0)
-      for (int h = 0; h < histories; ++h)
-        for (int k = 0; k < count; ++k)
-          history[h * count + k] = law.initial_history(1e-3)[h];
+    const auto initial = law.initial_history(1e-3);
+    for (int h = 0; h < histories; ++h)
+      std::fill_n(history.begin() + h * count, count, initial[h]);
   }
   /// Some points move much and some little: part of them flows.
   void draw(Random& random, double size) {

@@ -6,6 +6,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace kerf {
 namespace {
 
@@ -102,6 +104,7 @@ TEST(TransverselyIsotropic, equal_constants_are_the_isotropic_law) {
 // above is a claim about the time step, which goes with the root of C11'.
 TEST(TransverselyIsotropic, its_bound_is_stiffer_for_every_strain_but_not_by_much) {
   Random random;
+  std::vector<double> over;
   for (int n = 0; n < 200; ++n) {
     auto p = slate({random(), random(), random()});
     p.young_normal = p.young_in_plane * std::pow(4.0, random());
@@ -113,20 +116,24 @@ TEST(TransverselyIsotropic, its_bound_is_stiffer_for_every_strain_but_not_by_muc
     p.poisson_normal = std::min(p.poisson_normal, 0.8 * most);
     const auto law = TransverselyIsotropic::from(p, 3);
     const auto bound = law.bound();
-    Eigen::Matrix<double, 6, 6> C, above;
+    Eigen::Matrix<double, 6, 6> above;
     for (int k = 0; k < 6; ++k) {
       Tensor<3> unit{};
       unit[k] = k < 3 ? 1.0 : std::sqrt(0.5);
       const auto stress = law.stress<ScalarMath, 3>(unit), stiffer = bound.stress(unit);
       for (int m = 0; m < 6; ++m) {
-        C(m, k) = (m < 3 ? 1.0 : std::sqrt(2.0)) * stress[m];
-        above(m, k) = (m < 3 ? 1.0 : std::sqrt(2.0)) * stiffer[m] - C(m, k);
+        above(m, k) = (m < 3 ? 1.0 : std::sqrt(2.0)) * (stiffer[m] - stress[m]);
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(above), own(C);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(above);
     EXPECT_GE(solver.eigenvalues()[0], -1e-12 * bound.uniaxial());
-    EXPECT_LE(bound.uniaxial(), 1.0001 * own.eigenvalues()[5]);
+    const double C11 = law.lambda + 2.0 * law.mu_p, C13 = law.lambda + law.alpha;
+    const double C33 = C13 + law.alpha + 4.0 * law.mu_n - 2.0 * law.mu_p + law.beta;
+    over.push_back(bound.uniaxial() / std::max(C11, C33));
   }
+  std::sort(over.begin(), over.end());
+  EXPECT_LT(over[100], 1.02);
+  EXPECT_LT(over.back(), 1.7);
 }
 
 // Reference: Hooke's law, written with E and nu. Tolerance: rounding.
