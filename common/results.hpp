@@ -19,7 +19,8 @@ enum class Cells {
   segments, // 2 points
   quads,    // 4 points, VTK's order
   hexes,    // 8 points, VTK's order
-  triangles // 3 points
+  triangles, // 3 points
+  tetrahedra // 4 points, VTK's order
 };
 
 /// One quantity at the points or cells of a grid. The writer does not keep the data.

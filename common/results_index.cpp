@@ -46,6 +46,9 @@ std::string topology(const std::string& file, const Layout& layout) {
   case Cells::triangles:
     kind = R"("Triangle")";
     break;
+  case Cells::tetrahedra:
+    kind = R"("Tetrahedron")";
+    break;
   }
   return fmt::format(
       "        <Topology TopologyType={} NumberOfElements=\"{}\">{}</Topology>\n", kind,

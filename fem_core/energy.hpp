@@ -4,19 +4,20 @@
 namespace kerf::fem {
 
 /// Energies at t_n and the work done until then, J (per metre of thickness in 2D). The balance is
-/// kinetic + internal + hourglass + damped - external_work - interface_work, which stays what it was
-/// at the start: of linear bodies to round-off, otherwise to second order in the time step.
+/// kinetic + elastic + dissipated + hourglass + damped - external_work - interface_work, which stays
+/// what it was at the start: of linear bodies to round-off, otherwise to second order in the time
+/// step.
 struct Energies {
   double kinetic = 0.0;        // 1/2 v^(n-1/2) . M v^(n+1/2)
-  double internal = 0.0;       // elastic energy and dissipated
-  double dissipated = 0.0;     // of internal: by plastic flow and damage
+  double elastic = 0.0;        // work of the stress that was not dissipated
+  double dissipated = 0.0;     // by plastic flow and damage
   double hourglass = 0.0;      // in the control of the hourglass modes
   double damped = 0.0;         // by damping and viscosity
   double external_work = 0.0;  // of the reactions where the motion is prescribed, loads and gravity
   double interface_work = 0.0; // of the forces of the couplings
 
   double balance() const {
-    return kinetic + internal + hourglass + damped - external_work - interface_work;
+    return kinetic + elastic + dissipated + hourglass + damped - external_work - interface_work;
   }
 };
 

@@ -245,23 +245,31 @@ template <int dim> void Engine<dim>::start(double time_step) {
   const std::size_t rows = patches_.num_rows();
   displacement_ = velocity_ = force_ = Rows<dim>(rows);
   parts_ = Rows<dim>(patches_.shared.size());
-  for (std::size_t row = 0; row < rows; ++row)
-    if (mass_[row] > 0.0) {
-      const std::size_t a = patches_.node_of_row[row];
-      displacement_[row] = Eigen::Map<const Vec<dim>>(&u[a * dim]);
-      velocity_[row] = Eigen::Map<const Vec<dim>>(&v[a * dim]);
-    }
+  set_motion(u, v);
   initial_displacement_.clear();
   for (const auto& [row, component, node] : moved_) {
     initial_displacement_.push_back(displacement_[row][component]);
     velocity_[row][component] = boundary_.velocity(node, component, -1, time_step);
   }
-  forces_are_current_ = false;
+  for (GroupKernel& group : groups_)
+    group.start();
   interface_rows_.clear();
   interface_force_ = {};
   element_work_ = {};
   sums_ = {};
   damped_work_ = reaction_work_ = gravity_work_ = interface_work_ = {};
+}
+
+template <int dim>
+void Engine<dim>::set_motion(std::span<const double> displacement,
+                             std::span<const double> velocity) {
+  for (std::size_t row = 0; row < mass_.size(); ++row)
+    if (mass_[row] > 0.0) {
+      const std::size_t a = patches_.node_of_row[row];
+      displacement_[row] = Eigen::Map<const Vec<dim>>(&displacement[a * dim]);
+      velocity_[row] = Eigen::Map<const Vec<dim>>(&velocity[a * dim]);
+    }
+  forces_are_current_ = false;
 }
 
 template <int dim>
@@ -471,7 +479,7 @@ template <int dim> Energies Engine<dim>::energies() const {
     work.hourglass += of_patch.hourglass;
   }
   return {.kinetic = sums_.kinetic,
-          .internal = work.internal,
+          .elastic = work.internal - work.dissipated,
           .dissipated = work.dissipated,
           .hourglass = work.hourglass,
           .damped = damped_work_.at_step() + work.viscous,

@@ -54,6 +54,10 @@ public:
   /// @throws std::invalid_argument unless the time step, s, is positive
   void start(double time_step);
 
+  /// Gives all nodes that have mass another motion, between two steps.
+  /// @param displacement, velocity  [num_nodes][dim] u^n, m, and v^(n-1/2), m/s
+  void set_motion(std::span<const double> displacement, std::span<const double> velocity);
+
   std::uint64_t step() const { return static_cast<std::uint64_t>(step_); } // n, between two steps
   /// All that steps have changed, between two steps.
   State state() const;

@@ -4,6 +4,7 @@
 #include "fem_core/patches.hpp"
 #include "fem_core/rows.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -23,6 +24,13 @@ struct GroupKernel {
   // Arrays of the group as PatchView has them; empty where there is nothing of the kind.
   std::vector<double> alpha, length, dilatation;
   std::vector<double> stress, history, hourglass; // change in every step
+  std::vector<double> initial_history;
+
+  void start() {
+    std::fill(stress.begin(), stress.end(), 0.0);
+    std::fill(hourglass.begin(), hourglass.end(), 0.0);
+    history = initial_history;
+  }
 };
 
 /// Motion of the nodes as the kernels need it.

@@ -124,12 +124,12 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
         group.law.thickness = LawType::history - 1;
       if (group.increments) {
         group.stress.assign(lengths.size() * points * size, 0.0);
-        group.history.resize(lengths.size() * points * LawType::history);
+        group.initial_history.resize(lengths.size() * points * LawType::history);
         for (std::size_t e = 0; e < lengths.size(); ++e) {
           const auto initial = law.initial_history(lengths[e]);
           for (std::size_t q = 0; q < points; ++q)
             for (std::size_t k = 0; k < initial.size(); ++k)
-              group.history[((e / batch_size * points + q) * initial.size() + k) * batch_size +
+              group.initial_history[((e / batch_size * points + q) * initial.size() + k) * batch_size +
                             e % batch_size] = initial[k];
         }
       }

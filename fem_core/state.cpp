@@ -38,7 +38,7 @@ struct StateParts {
   }
   template <class Visit> static void of(GroupKernel& group, Visit& visit) {
     auto& [compute, kinematics, increments, points, law, parameters, moduli, constants, alpha,
-           length, dilatation, stress, history, hourglass] = group;
+           length, dilatation, stress, history, hourglass, initial_history] = group;
     visit("stress", stress);
     visit("history", history);
     visit("hourglass", hourglass);

@@ -74,7 +74,7 @@ private:
 /// Energy of everything at each row; a single participant stands without the couplings.
 std::vector<double> total_energy(const Histories& histories, const nlohmann::json& participant) {
   std::vector<double> energy =
-      histories.participants(participant, {"kinetic_energy", "elastic_energy"});
+      histories.participants(participant, {"kinetic_energy", "elastic_energy", "hourglass_energy"});
   if (participant.is_null()) {
     const std::vector<double> stored = histories.couplings({}, {"stored_energy"});
     for (std::size_t k = 0; k < stored.size(); ++k)
@@ -99,7 +99,8 @@ double energy_balance_error(const Histories& histories, const nlohmann::json& m)
       W[k] += through[k];
   }
   const std::vector<double> D = histories.participants(
-      who, {"damping_dissipation", "friction_dissipation", "fracture_dissipation"});
+      who, {"damping_dissipation", "friction_dissipation", "fracture_dissipation",
+            "plastic_dissipation"});
   double error = 0.0, scale = std::abs(E.front());
   for (std::size_t k = 0; k < E.size(); ++k) {
     error = std::max(error, std::abs(E[k] - E.front() - (W[k] - W.front()) + (D[k] - D.front())));

@@ -23,19 +23,24 @@ double seconds_since(Clock::time_point start) {
 }
 
 template <int dim> coupler::Declaration declare(const Mesh<dim>& mesh) {
-  constexpr double per_element = // gradients, volumes, forces, indices
-      gauss_points<dim> * (element_nodes<dim> * dim + 1) * sizeof(double) +
-      element_nodes<dim> * (dim * sizeof(double) + 3 * sizeof(std::uint32_t));
-  constexpr double per_node = 10 * dim * sizeof(double); // vectors of the state and of the mesh
+  constexpr double per_element = 100.0; // indices, and what some laws store
+  constexpr double per_node = 8.0 * row_size<dim> * sizeof(double); // rows of the state, the mesh
 
   coupler::Declaration declaration;
   declaration.dimension = dim;
   declaration.ids.resize(mesh.num_nodes());
   std::iota(declaration.ids.begin(), declaration.ids.end(), 0);
   declaration.positions = mesh.positions;
-  declaration.nodes_per_element = element_nodes<dim>;
-  declaration.elements = mesh.elements;
-  declaration.boundary = mesh.boundary;
+  if (mesh.blocks.size() == 1) { // TODO(issue 5): zones through meshes of two shapes
+    declaration.nodes_per_element = nodes_of(mesh.blocks[0].shape);
+    declaration.elements = mesh.blocks[0].nodes;
+    for (const auto& [tag, faces] : mesh.boundary)
+      for (const Face& face : faces) {
+        const auto nodes = mesh.nodes_of_face(face);
+        auto& of_tag = declaration.boundary[tag];
+        of_tag.insert(of_tag.end(), nodes.begin(), nodes.end());
+      }
+  }
   declaration.memory_estimate = per_element * static_cast<double>(mesh.num_elements()) +
                                 per_node * static_cast<double>(mesh.num_nodes());
   declaration.has_checkpoints = true;
@@ -109,7 +114,7 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
                                     {"output", output.seconds()}}},
                                   {"threads", omp_get_max_threads()},
                                   {"nodes", mesh.num_nodes()},
-                                  {"elements", engine.elements().size()}};
+                                  {"elements", engine.active_elements().size()}};
   participant.finalize(summary.dump());
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -16,6 +17,8 @@ namespace {
 template <int dim> std::vector<Column> history_columns() {
   std::vector<Column> columns = {{"step", "1"},           {"time", "s"},
                                  {"kinetic_energy", "J"}, {"elastic_energy", "J"},
+                                 {"hourglass_energy", "J"}, {"plastic_dissipation", "J"},
+                                 {"damping_dissipation", "J"},
                                  {"external_work", "J"},  {"interface_work", "J"}};
   for (int axis = 0; axis < dim; ++axis)
     columns.push_back({fmt::format("momentum_{}", "xyz"[axis]), "N s"});
@@ -30,15 +33,18 @@ template <int dim> std::size_t fastest_node(std::span<const double> velocity) {
   return static_cast<std::size_t>(fastest - velocity.begin()) / dim;
 }
 
-/// A stress in Voigt's order: xx, yy, xy; or xx, yy, zz, yz, xz, xy.
-template <int dim> void append_voigt(const Tensor<dim>& stress, std::vector<double>& out) {
-  for (int i = 0; i < dim; ++i)
-    out.push_back(stress(i, i));
-  if constexpr (dim == 3) {
-    out.push_back(stress(1, 2));
-    out.push_back(stress(0, 2));
+Cells cells_of(Shape shape) {
+  switch (shape) {
+  case Shape::tri3:
+    return Cells::triangles;
+  case Shape::quad4:
+    return Cells::quads;
+  case Shape::tet4:
+    return Cells::tetrahedra;
+  case Shape::hex8:
+    break;
   }
-  out.push_back(stress(0, 1));
+  return Cells::hexes;
 }
 
 } // namespace
@@ -59,38 +65,54 @@ template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time
   const Stopwatch stopwatch(seconds_);
   check_finite(step, time);
   const Mesh<dim>& mesh = engine_.mesh();
-  const Elements<dim>& elements = engine_.elements();
-  const std::span<const double> u = engine_.displacement();
+  const std::vector<double> u = engine_.displacement(), v = engine_.velocity(),
+                            mass = engine_.mass();
 
   std::vector<double> position(mesh.positions);
   for (std::size_t dof = 0; dof < position.size(); ++dof)
     position[dof] += u[dof];
 
   // Elements that were left out keep their cells, without energy or stress.
-  constexpr std::size_t stress_components = dim == 2 ? 3 : 6;
+  constexpr std::size_t components = Symmetric<double, dim>::size;
   std::vector<double> energy(mesh.num_elements(), 0.0);
-  std::vector<double> stress;
-  stress.reserve(mesh.num_elements() * stress_components);
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    stress.resize(elements.number[e] * stress_components, 0.0);
-    energy[elements.number[e]] = element_energy(elements, engine_.material(), u, e);
-    append_voigt<dim>(element_stress(elements, engine_.material(), u, e), stress);
+  std::vector<double> stress(mesh.num_elements() * components, 0.0);
+  std::map<std::string, std::vector<double>> history;
+  for (const std::uint32_t e : engine_.active_elements()) {
+    const ElementState<dim> state = engine_.element_state(e);
+    energy[e] = state.energy;
+    std::copy_n(state.stress.c, components, stress.begin() + e * components);
+    const Material& material = engine_.settings().materials[engine_.material_of(e)].material;
+    const auto names = history_of(material, engine_.settings().plane);
+    for (std::size_t k = 0; k < state.history.size(); ++k)
+      history.try_emplace(names[k].name, mesh.num_elements(), 0.0).first->second[e] =
+          state.history[k];
   }
-  stress.resize(mesh.num_elements() * stress_components, 0.0);
 
-  const Grid grid{.name = "mesh",
-                  .positions = position,
-                  .points_of = {},
-                  .cells = dim == 2 ? Cells::quads : Cells::hexes,
-                  .connectivity = mesh.elements,
-                  .point_fields = {{"id", 1, std::span<const std::int64_t>(ids_)},
-                                   {"displacement", dim, u},
-                                   {"velocity", dim, engine_.velocity()},
-                                   {"mass", 1, engine_.mass()},
-                                   {"alpha", 1, std::span<const double>(alpha_)}},
-                  .cell_fields = {{"elastic_energy", 1, std::span<const double>(energy)},
-                                  {"stress", stress_components, std::span<const double>(stress)}}};
-  frames_.write(step, time, std::span(&grid, 1));
+  // A grid for the elements of each shape; all have all the points.
+  std::vector<Grid> grids;
+  std::size_t first = 0;
+  for (const Block& block : mesh.blocks) {
+    const auto part = [&](const std::vector<double>& values, std::size_t columns) {
+      return std::span<const double>(values).subspan(first * columns, block.size() * columns);
+    };
+    Grid& grid = grids.emplace_back(
+        Grid{.name = mesh.blocks.size() == 1 ? "mesh" : fmt::format("mesh_{}", name_of(block.shape)),
+             .positions = position,
+             .points_of = {},
+             .cells = cells_of(block.shape),
+             .connectivity = block.nodes,
+             .point_fields = {{"id", 1, std::span<const std::int64_t>(ids_)},
+                              {"displacement", dim, std::span<const double>(u)},
+                              {"velocity", dim, std::span<const double>(v)},
+                              {"mass", 1, std::span<const double>(mass)},
+                              {"alpha", 1, std::span<const double>(alpha_)}},
+             .cell_fields = {{"elastic_energy", 1, part(energy, 1)},
+                             {"stress", components, part(stress, components)}}});
+    for (const auto& [name, values] : history)
+      grid.cell_fields.push_back({name, 1, part(values, 1)});
+    first += block.size();
+  }
+  frames_.write(step, time, grids);
 }
 
 template <int dim> void Output<dim>::write_history(std::uint64_t step, double time) {
@@ -100,7 +122,9 @@ template <int dim> void Output<dim>::write_history(std::uint64_t step, double ti
   const Vec<dim> momentum = engine_.momentum();
   std::vector<double> row = {static_cast<double>(step), time,
                              energies.kinetic,          energies.elastic,
-                             energies.external_work,    energies.interface_work};
+                             energies.hourglass,        energies.dissipated,
+                             energies.damped,           energies.external_work,
+                             energies.interface_work};
   row.insert(row.end(), momentum.begin(), momentum.end());
   if (!std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
     throw std::runtime_error(

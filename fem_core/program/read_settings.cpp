@@ -30,7 +30,7 @@ template <int dim> std::optional<Box<dim>> read_box(const Table& table) {
   return Box<dim>{lower, upper};
 }
 
-LinearElastic read_material(const Table& material, int dimension) {
+IsotropicElastic read_material(const Table& material, int dimension) {
   if (const std::string model = material.text("model"); model != "linear_elastic")
     throw SettingsError(material.path("model"),
                         fmt::format("\"{}\" must be linear_elastic", model));
@@ -39,9 +39,9 @@ LinearElastic read_material(const Table& material, int dimension) {
     throw SettingsError("material", "give exactly one pair: young_modulus and poisson_ratio, or "
                                     "C11 and C12");
   if (moduli)
-    return from_moduli(material.number("density"), material.number("C11"), material.number("C12"),
+    return IsotropicElastic::from_moduli(material.number("density"), material.number("C11"), material.number("C12"),
                        dimension);
-  return from_young(material.number("density"), material.number("young_modulus"),
+  return IsotropicElastic::from_young(material.number("density"), material.number("young_modulus"),
                     material.number("poisson_ratio"));
 }
 
@@ -119,7 +119,8 @@ template <int dim> InitialSetting<dim> read_initial(const Table& table) {
 
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh) {
   Settings<dim> settings;
-  settings.material = read_material(participant.table("material"), dim);
+  settings.materials.push_back(
+      {.material = {.law = read_material(participant.table("material"), dim)}, .region = {}, .box = {}});
   for (const Table& table : participant.list("boundary"))
     settings.boundary.push_back(read_boundary(table, mesh));
   for (const Table& table : participant.list("initial"))

@@ -42,13 +42,16 @@ struct ChainAndBar {
     const int n = width + elements_outside;
     return fem::make_box<2>({.origin = Vec<2>::Zero(),
                              .size = Vec<2>(n * h(), h()),
-                             .count = {static_cast<std::uint64_t>(n), 1}});
+                             .count = {static_cast<std::uint32_t>(n), 1}});
   }
   fem::Settings<2> fem_settings() const {
     fem::Settings<2> s;
     // E h (area of the bar per metre) = k_n d;  rho h d = m
-    s.material =
-        fem::from_young(particle_mass() / (spacing * h()), normal_stiffness * spacing / h(), 0.0);
+    s.materials = {{.material = {.law = fem::IsotropicElastic::from_young(
+                                     particle_mass() / (spacing * h()),
+                                     normal_stiffness * spacing / h(), 0.0)},
+                    .region = {},
+                    .box = {}}};
     fem::BoundarySetting<2> straight;
     straight.tag = "all";
     straight.components = {false, true};

@@ -29,9 +29,12 @@ inline coupler::Declaration declare(const fem::Engine<2>& engine) {
   d.ids.resize(engine.mesh().num_nodes());
   std::iota(d.ids.begin(), d.ids.end(), 0);
   d.positions = engine.mesh().positions;
-  d.nodes_per_element = fem::element_nodes<2>;
-  d.elements = engine.mesh().elements;
-  d.boundary = engine.mesh().boundary;
+  d.nodes_per_element = 4;
+  d.elements = engine.mesh().blocks[0].nodes;
+  for (const auto& [tag, faces] : engine.mesh().boundary)
+    for (const fem::Face& face : faces)
+      for (const std::uint32_t a : engine.mesh().nodes_of_face(face))
+        d.boundary[tag].push_back(a);
   return d;
 }
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "fem_core/engine.hpp"
-#include "fem_core/internal_force.hpp"
-#include "fem_core/mass.hpp"
+#include "fem_core/mesh/box.hpp"
 
 #include <Eigen/Dense>
 
@@ -11,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <span>
 #include <string>
@@ -19,7 +19,17 @@
 namespace kerf::cases {
 
 /// A rock of round numbers: E = 10 GPa, nu = 0.25, so lambda = mu = 4 GPa.
-inline const fem::LinearElastic rock = fem::from_young(2500.0, 10e9, 0.25);
+inline const fem::IsotropicElastic rock = fem::IsotropicElastic::from_young(2500.0, 10e9, 0.25);
+
+/// All of a body is of one material.
+template <int dim>
+std::vector<fem::MaterialSetting<dim>> of(const fem::Law& law,
+                                          fem::Formulation formulation = fem::Formulation::full,
+                                          bool finite_strain = false) {
+  return {{.material = {.law = law, .finite_strain = finite_strain, .formulation = formulation},
+           .region = {},
+           .box = {}}};
+}
 
 /// Moves the nodes inside a box by up to `share` of the element size along each axis; the outline
 /// stays what it was.
@@ -37,8 +47,10 @@ template <int dim> void distort(fem::Mesh<dim>& mesh, const fem::BoxMesh<dim>& b
 }
 
 /// Some box of a few elements, distorted by a quarter of their size.
-template <int dim> fem::Mesh<dim> distorted_box() {
+template <int dim>
+fem::Mesh<dim> distorted_box(fem::Shape shape = dim == 2 ? fem::Shape::quad4 : fem::Shape::hex8) {
   fem::BoxMesh<dim> box;
+  box.shape = shape;
   box.size = Vec<dim>::LinSpaced(dim, 3.0, 5.0) * 1e-3;
   box.count.fill(dim == 2 ? 4 : 3);
   fem::Mesh<dim> mesh = fem::make_box(box);
@@ -71,26 +83,32 @@ std::vector<double> ramp(const fem::Mesh<dim>& mesh, double begin, double width)
   return alpha;
 }
 
+/// Numbers of all nodes.
+template <int dim> std::vector<std::uint32_t> all_nodes(const fem::Engine<dim>& engine) {
+  std::vector<std::uint32_t> nodes(engine.mesh().num_nodes());
+  std::iota(nodes.begin(), nodes.end(), 0u);
+  return nodes;
+}
+
 /// -F^int of all nodes for a displacement field.
 template <int dim>
-std::vector<double> forces(const fem::Elements<dim>& elements, const fem::LinearElastic& material,
-                           std::span<const double> displacement) {
-  std::vector<double> of_elements(elements.size() * fem::element_nodes<dim> * dim);
-  std::vector<double> of_nodes(displacement.size());
-  fem::compute_element_forces<dim>(elements, material, displacement, of_elements);
-  fem::gather_element_forces<dim>(elements, of_elements, of_nodes);
-  return of_nodes;
+std::vector<double> forces(fem::Engine<dim>& engine, const std::vector<double>& displacement) {
+  engine.start(1.0);
+  engine.set_motion(displacement, std::vector<double>(displacement.size()));
+  engine.compute_own_forces();
+  std::vector<double> force(displacement.size());
+  engine.own_forces(all_nodes(engine), force);
+  return force;
 }
 
 /// The stiffness matrix of all nodes, column by column from the forces of unit displacements.
-template <int dim>
-Eigen::MatrixXd stiffness(const fem::Elements<dim>& elements, const fem::LinearElastic& material) {
-  const auto size = static_cast<Eigen::Index>(elements.num_nodes()) * dim;
+template <int dim> Eigen::MatrixXd stiffness(fem::Engine<dim>& engine) {
+  const auto size = static_cast<Eigen::Index>(engine.mesh().num_nodes()) * dim;
   Eigen::MatrixXd K(size, size);
   std::vector<double> u(static_cast<std::size_t>(size), 0.0);
   for (Eigen::Index j = 0; j < size; ++j) {
     u[static_cast<std::size_t>(j)] = 1.0;
-    const std::vector<double> f = forces<dim>(elements, material, u);
+    const std::vector<double> f = forces(engine, u);
     K.col(j) = -Eigen::Map<const Eigen::VectorXd>(f.data(), size);
     u[static_cast<std::size_t>(j)] = 0.0;
   }
@@ -98,10 +116,9 @@ Eigen::MatrixXd stiffness(const fem::Elements<dim>& elements, const fem::LinearE
 }
 
 /// Largest eigenvalue of the assembled M^-1 K, rad²/s²; nodes without mass do not count.
-template <int dim>
-double largest_omega2(const fem::Elements<dim>& elements, const fem::LinearElastic& material) {
-  const std::vector<double> mass = fem::lumped_mass(elements, material.density);
-  const Eigen::MatrixXd K = stiffness(elements, material);
+template <int dim> double largest_omega2(fem::Engine<dim>& engine) {
+  const std::vector<double> mass = engine.mass();
+  const Eigen::MatrixXd K = stiffness(engine);
   Eigen::VectorXd scale(K.rows());
   for (Eigen::Index i = 0; i < scale.size(); ++i) {
     const double m = mass[static_cast<std::size_t>(i / dim)];

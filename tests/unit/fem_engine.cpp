@@ -22,7 +22,7 @@ double safe_step(const auto& engine) {
 
 /// A bar whose left end is pushed by a Hann pulse; the right end is held.
 Settings<2> pushed() {
-  return {.material = rock,
+  return {.materials = cases::of<2>(rock),
           .boundary = {{.tag = "left",
                         .box = {},
                         .components = {true, true},
@@ -81,7 +81,7 @@ TEST(FemBoundary, moves_with_a_constant_velocity_and_reports_no_inverse_mass) {
 }
 
 TEST(FemBoundary, selects_by_box_and_lets_the_later_setting_count) {
-  Settings<2> settings{.material = rock, .boundary = {}, .initial = {}};
+  Settings<2> settings{.materials = cases::of<2>(rock), .boundary = {}, .initial = {}};
   settings.boundary.push_back({.tag = "",
                                .box = Box<2>{.lower = {0.0, 0.0}, .upper = {0.0, 3e-3}},
                                .components = {true, true}});
@@ -101,7 +101,7 @@ TEST(FemBoundary, selects_by_box_and_lets_the_later_setting_count) {
 TEST(FemBoundary, refuses_settings_that_cannot_be_meant_and_names_the_key) {
   const auto key = [](const BoundarySetting<2>& setting) -> std::string {
     try {
-      Engine<2>(make_box(bar), {.material = rock, .boundary = {setting}, .initial = {}});
+      Engine<2>(make_box(bar), {.materials = cases::of<2>(rock), .boundary = {setting}, .initial = {}});
     } catch (const InputError& error) {
       return error.key();
     }
@@ -158,7 +158,7 @@ TEST(FemBooks, have_interface_work_equal_to_the_energy_that_the_body_gains) {
 // Newton's second law for the whole body: momentum is the impulse of the forces, with the
 // trapezoidal half of the step at t_n. Tolerance: rounding of 200 steps.
 TEST(FemBooks, have_momentum_equal_to_the_impulse_of_the_forces) {
-  Engine<2> engine(make_box(bar), {.material = rock, .boundary = {}, .initial = {}});
+  Engine<2> engine(make_box(bar), {.materials = cases::of<2>(rock), .boundary = {}, .initial = {}});
   const double dt = safe_step(engine);
   engine.start(dt);
   const std::vector<std::uint32_t> nodes = {3, 30};
@@ -208,7 +208,7 @@ TEST(FemWeights, leave_the_part_with_alpha_and_keep_the_rest_in_its_place) {
   const Mesh<2> half =
       make_box(BoxMesh<2>{.origin = {10e-3, 0.0}, .size = {10e-3, 3e-3}, .count = {10, 3}});
   const Settings<2> settings{
-      .material = rock,
+      .materials = cases::of<2>(rock),
       .boundary = {{.tag = "right", .box = {}, .components = {true, false}}},
       .initial = {
           {.box = {},
@@ -256,7 +256,7 @@ TEST(FemEngine, carries_a_wave_across_the_end_of_a_period_as_through_a_longer_me
   const InitialPulse pulse{
       .amplitude = 1e-6, .center = 15e-3, .length = 8e-3, .wave_speed = 2190.0, .spacing = 1e-3};
   const Settings<2> settings{
-      .material = rock, .boundary = {}, .initial = {{.box = {}, .velocity = {}, .pulse = pulse}}};
+      .materials = cases::of<2>(rock), .boundary = {}, .initial = {{.box = {}, .velocity = {}, .pulse = pulse}}};
   const BoxMesh<2> once{.size = {20e-3, 3e-3}, .count = {20, 3}};
   const BoxMesh<2> thrice{.origin = {-20e-3, 0.0}, .size = {60e-3, 3e-3}, .count = {60, 3}};
   Engine<2> periodic(make_box(once, {.length = {20e-3, 3e-3}}), settings);
@@ -283,7 +283,7 @@ TEST(FemEngine, gives_the_same_bits_with_one_thread_and_with_two) {
     const int before = omp_get_max_threads();
     omp_set_num_threads(threads);
     Mesh<3> mesh = make_box(BoxMesh<3>{.size = {20e-3, 10e-3, 10e-3}, .count = {20, 10, 10}});
-    Settings<3> settings{.material = rock,
+    Settings<3> settings{.materials = cases::of<3>(rock),
                          .boundary = {{.tag = "left",
                                        .box = {},
                                        .components = {true, true, true},
@@ -297,8 +297,9 @@ TEST(FemEngine, gives_the_same_bits_with_one_thread_and_with_two) {
     for (int n = 0; n < 30; ++n)
       cases::step(engine);
     omp_set_num_threads(before);
-    std::vector<double> all(engine.displacement().begin(), engine.displacement().end());
-    all.insert(all.end(), engine.velocity().begin(), engine.velocity().end());
+    std::vector<double> all = engine.displacement();
+    const std::vector<double> v = engine.velocity();
+    all.insert(all.end(), v.begin(), v.end());
     const Energies e = engine.energies();
     all.insert(all.end(), {e.kinetic, e.elastic, e.external_work, engine.momentum()[1],
                            engine.step_limit().omega2});
@@ -313,8 +314,7 @@ TEST(FemEngine, can_be_started_again) {
     engine.start(safe_step(engine));
     for (int n = 0; n < 20; ++n)
       cases::step(engine);
-    return std::pair(std::vector<double>(engine.velocity().begin(), engine.velocity().end()),
-                     engine.energies().external_work);
+    return std::pair(engine.velocity(), engine.energies().external_work);
   };
   const auto first = run();
   EXPECT_EQ(first, run());
