@@ -57,11 +57,11 @@ std::string name_of(Formulation formulation) {
 } // namespace
 
 double Material::density() const {
-  return std::visit([](const auto& law) { return law.density; }, law);
+  return std::visit([](const auto& any) { return any.density; }, law);
 }
 
 Moduli Material::bound() const {
-  return std::visit([](const auto& law) { return law.bound(); }, law);
+  return std::visit([](const auto& any) { return any.bound(); }, law);
 }
 
 void check(const Material& material, Shape shape, Plane plane) {

@@ -4,7 +4,7 @@
 
 #include "coupler/broker/coupling.hpp"
 #include "dem_core/settings.hpp"
-#include "fem_core/mesh.hpp"
+#include "fem_core/mesh/box.hpp"
 #include "fem_core/settings.hpp"
 #include "tests/cases/coupled_system.hpp"
 

@@ -106,7 +106,7 @@ TEST_F(FemParticipant, writes_a_history_and_frames_that_open_without_the_program
   for (const double e : energy)
     sum += e;
   EXPECT_NEAR(sum, elastic[2], 1e-12 * elastic[2]); // x^20, and the row of t_20
-  EXPECT_EQ(frame.at("mesh/stress").columns, 3u);
+  EXPECT_EQ(frame.at("mesh/stress").columns, 4u);
   EXPECT_EQ(frame.at("mesh/alpha").reals()[5], 1.0);
 }
 

@@ -57,9 +57,11 @@ TEST(FemSettings, are_read_as_they_are_written) {
   const Settings<2> read = read_settings(settings, mesh);
   EXPECT_EQ(mesh.num_elements(), 560u);
   EXPECT_EQ(mesh.position(0), Vec<2>(0.01, 0.0));
-  EXPECT_EQ(read.material.density, 2358.0);
-  EXPECT_EQ(read.material.lambda, 4e9);
-  EXPECT_EQ(read.material.mu, 4e9);
+  ASSERT_EQ(read.materials.size(), 1u);
+  const auto& law = std::get<IsotropicElastic>(read.materials[0].material.law);
+  EXPECT_EQ(law.density, 2358.0);
+  EXPECT_EQ(law.moduli.lambda, 4e9);
+  EXPECT_EQ(law.moduli.mu, 4e9);
   ASSERT_EQ(read.boundary.size(), 2u);
   EXPECT_EQ(read.boundary[0].tag, "right");
   EXPECT_EQ(read.boundary[0].components, (std::array{true, true}));
