@@ -91,8 +91,7 @@ template <int dim> Mesh<dim> read_tunnel(const Table& mesh) {
     const Vec<dim> center = mesh.vector<dim>("center");
     if (dim == 3 && center[dim - 1] != origin[dim - 1])
       throw SettingsError(mesh.path("center"),
-                          "it is at the lower end of the tunnel: give it the z "
-                          "of origin");
+                          "it is at the lower end of the tunnel: give it the z of origin");
     tunnel.center = center.template head<2>();
   }
   if constexpr (dim == 2)

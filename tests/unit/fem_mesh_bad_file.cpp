@@ -2,6 +2,9 @@
 #include "tests/unit/fem_mesh_file.hpp"
 
 #include "fem_core/mesh/box.hpp"
+#include "fem_core/program/read_mesh.hpp"
+
+#include <nlohmann/json.hpp>
 
 namespace kerf::fem {
 namespace {
@@ -98,6 +101,27 @@ TEST_F(BadMeshFile, has_a_size_or_a_scale_that_makes_no_sense) {
             "mesh.element_size: a.msh is a mesh, whose elements have a size; leave it out");
   EXPECT_EQ(refused({.path = "a.step"}),
             "mesh.element_size: a.step is a geometry; give the largest size of its elements");
+}
+
+TEST_F(BadMeshFile, has_elements_that_cannot_be_computed_with) {
+  const auto told = [](const std::filesystem::path& file) {
+    const nlohmann::json participant = {{"mesh", {{"type", "file"}, {"file", file.string()}}}};
+    return refusal([&] { read_mesh(Table(participant, ""), Period<2>{}); });
+  };
+  Mesh<2> mesh = make_box(BoxMesh<2>{.size = {2, 1}, .count = {2, 1}});
+  const auto good = save(mesh, "good.msh", [] {});
+  EXPECT_EQ(told(good), "nothing was refused");
+
+  mesh.positions[2 * 5] = 0.8; // the upper right corner of the second element comes to the first
+  EXPECT_TRUE(told(save(mesh, "folded.msh", [] {
+              })).starts_with("mesh.file: element 1 (quad4, region \"body\") has a Jacobian of "));
+
+  mesh.positions[2 * 5] = 2.0;
+  mesh.positions.insert(mesh.positions.end(), {1.0, 0.0});
+  mesh.blocks[0].nodes[4] = 6; // in place of node 1: the second element is not joined there
+  mesh.boundary.clear();
+  EXPECT_TRUE(told(save(mesh, "parted.msh", [] {
+              })).starts_with("mesh.file: nodes 1 and 6 are both at (1, 0)"));
 }
 
 } // namespace

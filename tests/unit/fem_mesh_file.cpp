@@ -141,6 +141,16 @@ TEST_F(MeshFileTest, has_every_element_once_although_it_is_in_two_groups) {
   }
 }
 
+TEST_F(MeshFileTest, has_every_face_once_although_two_groups_of_one_name_have_it) {
+  const Mesh<2> made = make_box(BoxMesh<2>{.size = {1.0, 1.0}, .count = {2, 2}});
+  const auto path = save(made, "groups.msh", [] { // entities 2 and 3 are the bottom and the left
+    gmsh::model::addPhysicalGroup(1, {2, 3}, 99); // has its number for a name
+    gmsh::model::setPhysicalName(1, gmsh::model::addPhysicalGroup(1, {2}, 98), "99");
+  });
+  EXPECT_EQ(sorted(read_mesh_file<2>({.path = path}).boundary.at("99")),
+            (std::vector<std::pair<std::uint32_t, int>>{{0, 0}, {0, 2}, {1, 2}, {2, 0}}));
+}
+
 TEST_F(MeshFileTest, takes_a_face_between_two_elements_as_a_side_of_the_first) {
   const Mesh<2> made = make_tunnel(
       {.size = {2.0, 2.0}, .radius = 0.5, .radial = 1, .around = 8, .excavation = true});
