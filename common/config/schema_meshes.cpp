@@ -27,7 +27,8 @@ std::vector<Key> element_keys() {
       {"participants.*.mesh.grading", "fem", vector, "", none, in(above_zero), "[4.0, 1.0]",
        "of a box, along each axis, the size of the last element over that of the first"},
       {"participants.*.mesh.center", "fem", vector, "m", none, anything, "[0.0, 0.0]",
-       "the middle of a disc or a ring; in 3D of the lower end; of an opening, else of its block"},
+       "the middle of a disc or a ring, in 3D of its lower end; of a tunnel when it is not that of "
+       "its block"},
       {"participants.*.mesh.radius", "fem", number, "m", none, in(above_zero), "3.2e-3",
        "the radius of a disc, a cylinder, a ring or a tunnel"},
       {"participants.*.mesh.inner_radius", "fem", number, "m", none, in(above_zero), "1e-3",

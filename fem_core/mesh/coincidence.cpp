@@ -28,11 +28,15 @@ template <int dim> std::uint64_t hash(const Vec<dim>& cell) {
 template <int dim>
 std::optional<std::pair<std::uint32_t, std::uint32_t>>
 coincident_nodes(const Mesh<dim>& mesh, double tolerance, double cell) {
-  // Every node is in the cells that its surroundings touch: mostly one.
+  if (mesh.num_nodes() == 0)
+    return std::nullopt;
+  // Every node is in the cells that its surroundings touch: mostly one, and so in a regular mesh
+  // whose first node is in the middle of a cell.
+  const Vec<dim> origin = mesh.position(0).array() - 0.5 * cell;
   std::vector<Entry> entries;
   entries.reserve(mesh.num_nodes());
   for (std::uint32_t node = 0; node < mesh.num_nodes(); ++node) {
-    const Vec<dim> x = mesh.position(node);
+    const Vec<dim> x = mesh.position(node) - origin;
     const Vec<dim> lower = ((x.array() - tolerance) / cell).floor();
     const Vec<dim> upper = ((x.array() + tolerance) / cell).floor();
     for (int corner = 0; corner < (1 << dim); ++corner) {

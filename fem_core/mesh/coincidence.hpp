@@ -8,7 +8,7 @@
 
 namespace kerf::fem {
 
-/// The first two nodes, by number, that are closer than the tolerance.
+/// The first two nodes, by number, that are closer than the tolerance; nothing when there are none.
 ///
 /// @param tolerance  m, > 0, less than half of the cell
 /// @param cell       size of the cells that nodes are sorted into, m: the distance of other nodes

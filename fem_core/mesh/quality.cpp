@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -19,43 +20,52 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 template <int dim> using Corners = Eigen::Matrix<double, dim, Eigen::Dynamic, 0, dim, 8>;
 template <int dim> using Square = Eigen::Matrix<double, dim, dim>;
 
-/// A corner of the square or cube [-1, 1]^dim, in VTK's order.
-template <int dim> Vec<dim> reference_corner(int a) {
-  const double x = (a % 4 == 1 || a % 4 == 2) ? 1.0 : -1.0, y = a % 4 < 2 ? -1.0 : 1.0;
-  if constexpr (dim == 2)
-    return {x, y};
-  else
-    return {x, y, a < 4 ? -1.0 : 1.0};
-}
+/// dN_a/dxi of a quad or a hex, at each of its corners and then at each of its Gauss points.
+template <int dim> struct Slopes {
+  static constexpr int num_nodes = 1 << dim;
+  using Matrix = Eigen::Matrix<double, num_nodes, dim>;
+  std::array<Matrix, num_nodes> at_corner, at_point;
 
-/// dx/dxi of a quad or a hex.
-template <int dim> Square<dim> jacobian_at(const Corners<dim>& x, const Vec<dim>& xi) {
-  Square<dim> J = Square<dim>::Zero();
-  for (int a = 0; a < (1 << dim); ++a) {
-    const Vec<dim> corner = reference_corner<dim>(a);
-    const Vec<dim> factor = 0.5 * (Vec<dim>::Ones() + corner.cwiseProduct(xi));
-    for (int i = 0; i < dim; ++i) { // dN_a/dxi_i
-      double slope = 0.5 * corner[i];
-      for (int j = 0; j < dim; ++j)
-        slope *= i == j ? 1.0 : factor[j];
-      J.col(i) += slope * x.col(a);
+  Slopes() {
+    for (int k = 0; k < num_nodes; ++k) {
+      at_corner[k] = at(corner(k));
+      at_point[k] = at(corner(k) / std::numbers::sqrt3);
     }
   }
-  return J;
-}
+
+private:
+  /// A corner of the square or cube [-1, 1]^dim, in VTK's order.
+  static Vec<dim> corner(int a) {
+    const double x = (a % 4 == 1 || a % 4 == 2) ? 1.0 : -1.0, y = a % 4 < 2 ? -1.0 : 1.0;
+    if constexpr (dim == 2)
+      return {x, y};
+    else
+      return {x, y, a < 4 ? -1.0 : 1.0};
+  }
+
+  static Matrix at(const Vec<dim>& xi) {
+    Matrix slopes;
+    for (int a = 0; a < num_nodes; ++a)
+      for (int i = 0; i < dim; ++i) {
+        slopes(a, i) = 0.5 * corner(a)[i];
+        for (int j = 0; j < dim; ++j)
+          slopes(a, i) *= i == j ? 1.0 : 0.5 * (1.0 + corner(a)[j] * xi[j]);
+      }
+    return slopes;
+  }
+};
 
 struct Measures {
   double jacobian, scaled_jacobian, shortest_edge, longest_edge;
 };
 
-template <int dim> void measure_cell(const Corners<dim>& x, Measures& measures) {
-  const double gauss = 1.0 / std::numbers::sqrt3;
-  for (int a = 0; a < (1 << dim); ++a) {
-    const Square<dim> J = jacobian_at<dim>(x, reference_corner<dim>(a));
+template <int dim> void measure_cell(const Corners<dim>& corners, Measures& measures) {
+  static const Slopes<dim> slopes;
+  const Eigen::Matrix<double, dim, (1 << dim)> x = corners;
+  for (int k = 0; k < (1 << dim); ++k) {
+    const Square<dim> J = x * slopes.at_corner[k], at_point = x * slopes.at_point[k];
     const double det = J.determinant();
-    measures.jacobian =
-        std::min({measures.jacobian, det,
-                  jacobian_at<dim>(x, gauss * reference_corner<dim>(a)).determinant()});
+    measures.jacobian = std::min({measures.jacobian, det, at_point.determinant()});
     measures.scaled_jacobian = std::min(measures.scaled_jacobian, det / J.colwise().norm().prod());
   }
 }

@@ -41,7 +41,7 @@ template <int dim> Quality<dim> quality_of(const Mesh<dim>& mesh);
 template <int dim> Quality<dim> check_mesh(const Mesh<dim>& mesh, const std::string& key);
 
 /// A doubt whether a mesh is in metres: a body of more than 100 km or less than 1 µm, or elements
-/// so large that a wave crosses none of them during the run, although it is the run's purpose.
+/// so large that a wave does not get through one of them in the whole run.
 ///
 /// @param travelled  wave speed times duration of the run, m; infinity when that is not known
 /// @return a sentence; nothing without a doubt

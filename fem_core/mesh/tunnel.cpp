@@ -2,6 +2,7 @@
 
 #include "fem_core/input_error.hpp"
 #include "fem_core/mesh/extrusion.hpp"
+#include "fem_core/mesh/quality.hpp"
 #include "fem_core/mesh/rings.hpp"
 
 #include <fmt/format.h>
@@ -100,6 +101,11 @@ Mesh<2> make_tunnel(const TunnelMesh& tunnel) {
     std::iota(mesh.regions["excavation"].begin(), mesh.regions["excavation"].end(), 0u);
     std::iota(mesh.regions["rock"].begin(), mesh.regions["rock"].end(), core);
   }
+  if (!(quality_of(mesh).jacobian.value > 0.0))
+    throw InputError(
+        tunnel.center ? "mesh.center" : "mesh.size",
+        "elements fold, because the opening is close to one side and far from another; "
+        "give it a place nearer to the middle, or a block that is wider there");
   return mesh;
 }
 

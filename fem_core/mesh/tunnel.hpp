@@ -23,10 +23,11 @@ struct TunnelMesh {
 /// A rectangle of quads with the tags left, right, bottom, top and wall.
 ///
 /// Elements lie on rays from the wall, at equal angles, to the sides, of which each has a quarter
-/// of them. With an excavation the elements are in the regions rock and excavation; the faces of
-/// the wall are sides of the rock either way.
+/// of them, at equal angles as seen from the middle of the opening. With an excavation the elements
+/// are in the regions rock and excavation; the faces of the wall are sides of the rock either way.
 /// @throws InputError with the key mesh.size, mesh.center, mesh.radius, mesh.count or
-///         mesh.radial_grading
+///         mesh.radial_grading; a side less than 1.15 radii from the middle of the opening may be
+///         too close to mesh
 Mesh<2> make_tunnel(const TunnelMesh& tunnel);
 
 /// A block of hexes with a tunnel along z; the ends have the tags back and front.

@@ -194,17 +194,17 @@ private:
             found != sides.end() && !found->second) // the first of two
           found->second = Face{element, static_cast<std::uint8_t>(side)};
       }
-    for (const GmshGroup& group : groups) {
-      std::set<std::pair<std::uint32_t, std::uint8_t>> faces;
+    std::map<std::string, std::set<std::pair<std::uint32_t, std::uint8_t>>> faces_by_name;
+    for (const GmshGroup& group : groups)
       for_each_side(group, [&](Number number, const NodeKey& key) {
         const std::optional<Face>& face = sides.at(key);
         if (!face)
           fail_without_side(group, number);
-        faces.emplace(face->element, face->side);
+        faces_by_name[group.name].emplace(face->element, face->side);
       });
+    for (const auto& [name, faces] : faces_by_name)
       for (const auto& [element, side] : faces)
-        mesh_.boundary[group.name].push_back({element, side});
-    }
+        mesh_.boundary[name].push_back({element, side});
   }
 
   [[noreturn]] void fail_without_side(const GmshGroup& group, Number number) const {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 
 namespace kerf::fem {
 namespace {
@@ -50,6 +51,11 @@ template <int dim> Mesh<dim> read_mesh_file(const MeshFile& file) {
 
   if (!std::filesystem::is_regular_file(file.path))
     throw InputError("mesh.file", "there is no file " + file.path.string());
+
+  if (std::string first; is_step && !(std::ifstream(file.path) >> first &&
+                                      first.starts_with("ISO-10303-21"))) // else OpenCASCADE prints
+    throw InputError("mesh.file", file.path.string() +
+                                      " is not a STEP file: it does not begin with ISO-10303-21");
 
   const char* name = dim == 2 ? "kerf_gmsh_read_2" : "kerf_gmsh_read_3";
   using Read = void(const MeshFile&, bool, Mesh<dim>&);

@@ -91,8 +91,7 @@ template <int dim> Mesh<dim> read_tunnel(const Table& mesh) {
     const Vec<dim> center = mesh.vector<dim>("center");
     if (dim == 3 && center[dim - 1] != origin[dim - 1])
       throw SettingsError(mesh.path("center"),
-                          "it is at the lower end of the tunnel: give it the z "
-                          "of origin");
+                          "it is at the lower end of the tunnel: give it the z of origin");
     tunnel.center = center.template head<2>();
   }
   if constexpr (dim == 2)
@@ -120,25 +119,24 @@ template <int dim> Mesh<dim> read_mesh(const Table& participant, const Period<di
   const Table table = participant.table("mesh");
   const std::string type = table.text("type");
   if (type == "box" || type == "bar")
-    return read_box(table, type, period); // a brick is always fit
+    return read_box(table, type, period);
   if ((period.length.array() > 0.0).any())
     throw SettingsError(table.path("type"), fmt::format("\"{}\" cannot be periodic", type));
 
-  const bool is_round = type == (dim == 2 ? "disc" : "cylinder") || type == "ring";
-  Mesh<dim> mesh;
-  if (type == "file")
-    mesh = read_mesh_file<dim>({.path = table.text("file"),
-                                .scale = table.number("scale", 1.0),
-                                .element_size = optional_number(table, "element_size")});
-  else if (is_round || type == "tunnel")
-    mesh = in_shape(is_round ? read_disc<dim>(table, type) : read_tunnel<dim>(table),
-                    read_shape<dim>(table));
-  else
-    throw SettingsError(table.path("type"),
-                        fmt::format("\"{}\" must be box, bar, {}, ring, tunnel or file", type,
-                                    dim == 2 ? "disc" : "cylinder"));
-  check_mesh(mesh, type == "file" ? "mesh.file" : "mesh.type");
-  return mesh;
+  if (type == "file") {
+    Mesh<dim> mesh = read_mesh_file<dim>({.path = table.text("file"),
+                                          .scale = table.number("scale", 1.0),
+                                          .element_size = optional_number(table, "element_size")});
+    check_mesh(mesh, "mesh.file");
+    return mesh;
+  }
+  if (type == "tunnel")
+    return in_shape(read_tunnel<dim>(table), read_shape<dim>(table));
+  if (type == (dim == 2 ? "disc" : "cylinder") || type == "ring")
+    return in_shape(read_disc<dim>(table, type), read_shape<dim>(table));
+  throw SettingsError(table.path("type"),
+                      fmt::format("\"{}\" must be box, bar, {}, ring, tunnel or file", type,
+                                  dim == 2 ? "disc" : "cylinder"));
 }
 
 template Period<2> read_period<2>(const Table&);

@@ -1,122 +1,19 @@
 // Meshes from files: what Gmsh writes in all of its versions is what the generators made, groups
-// are tags, and files that cannot be used are refused with a fix.
-#include "fem_core/program/mesh_file.hpp"
+// are tags, geometries are meshed.
+#include "tests/unit/fem_mesh_file.hpp"
 
 #include "fem_core/mesh/box.hpp"
 #include "fem_core/mesh/disc.hpp"
 #include "fem_core/mesh/quality.hpp"
 #include "fem_core/mesh/simplices.hpp"
 #include "fem_core/mesh/tunnel.hpp"
-#include "tests/unit/fem_mesh_checks.hpp"
 
-#include <gmsh.h>
 #include <omp.h>
 
-#include <cstdio>
-#include <fstream>
 #include <numbers>
 
 namespace kerf::fem {
 namespace {
-
-constexpr int gmsh_type(Shape shape) {
-  return std::array{2, 3, 4, 5}[static_cast<std::size_t>(shape)];
-}
-
-std::vector<std::size_t> numbers(std::span<const std::uint32_t> nodes) { // Gmsh counts from 1
-  std::vector<std::size_t> result;
-  for (const std::uint32_t node : nodes)
-    result.push_back(node + 1);
-  return result;
-}
-
-class MeshFileTest : public testing::Test {
-protected:
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-
-  std::filesystem::path written(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name)) << text;
-    return path(name);
-  }
-
-  /// Has the call done with the Gmsh library.
-  template <class Call> static void with_gmsh(Call call) {
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    call();
-    gmsh::finalize();
-  }
-
-  /// Gives a mesh to Gmsh and lets it write a file.
-  /// @param change  what else is done with the model before
-  template <int dim, class Change>
-  std::filesystem::path save(const Mesh<dim>& mesh, const std::string& name, Change change) const {
-    with_gmsh([&] {
-      add(mesh);
-      change();
-      gmsh::write(path(name).string());
-    });
-    return path(name);
-  }
-
-private:
-  /// Every region and every tag has an entity and a group of its own.
-  template <int dim> static void add(const Mesh<dim>& mesh) {
-    gmsh::model::add("mesh");
-    std::map<std::string, std::vector<std::uint32_t>> regions = mesh.regions;
-    if (regions.empty())
-      for (std::uint32_t e = 0; e < mesh.num_elements(); ++e)
-        regions["body"].push_back(e);
-    int entity = 0;
-    for (const auto& [tag, elements] : regions) {
-      gmsh::model::addDiscreteEntity(dim, ++entity);
-      if (entity == 1)
-        add_nodes(mesh);
-      for (const std::uint32_t e : elements)
-        gmsh::model::mesh::addElementsByType(entity, gmsh_type(mesh.shape_of(e)), {e + 1},
-                                             numbers(mesh.nodes_of_element(e)));
-      gmsh::model::setPhysicalName(dim, gmsh::model::addPhysicalGroup(dim, {entity}), tag);
-    }
-    std::size_t element = mesh.num_elements();
-    for (const auto& [tag, faces] : mesh.boundary) {
-      gmsh::model::addDiscreteEntity(dim - 1, ++entity);
-      for (const Face& face : faces) {
-        const std::vector<std::size_t> nodes = numbers(mesh.nodes_of_face(face));
-        gmsh::model::mesh::addElementsByType(entity, static_cast<int>(nodes.size()) - 1,
-                                             {++element}, nodes); // line, triangle, quad: 1, 2, 3
-      }
-      gmsh::model::setPhysicalName(dim - 1, gmsh::model::addPhysicalGroup(dim - 1, {entity}), tag);
-    }
-    for (const auto& [tag, nodes] : mesh.node_sets) {
-      std::vector<int> entities;
-      for (const std::uint32_t node : nodes) {
-        gmsh::model::addDiscreteEntity(0, ++entity);
-        gmsh::model::mesh::addElementsByType(entity, 15, {++element}, {node + 1});
-        entities.push_back(entity);
-      }
-      gmsh::model::setPhysicalName(0, gmsh::model::addPhysicalGroup(0, entities), tag);
-    }
-  }
-
-  template <int dim> static void add_nodes(const Mesh<dim>& mesh) {
-    std::vector<std::size_t> nodes;
-    std::vector<double> x;
-    for (std::size_t node = 0; node < mesh.num_nodes(); ++node) {
-      nodes.push_back(node + 1);
-      for (std::size_t a = 0; a < 3; ++a)
-        x.push_back(a < dim ? mesh.positions[node * dim + a] : 0.25);
-    }
-    gmsh::model::mesh::addNodes(dim, 1, nodes, x);
-  }
-
-  static std::filesystem::path new_folder() {
-    char name[] = "/tmp/kerf_mesh_XXXXXX";
-    return mkdtemp(name);
-  }
-  std::filesystem::path folder_ = new_folder();
-};
 
 /// Faces in one order: a file does not keep theirs.
 std::vector<std::pair<std::uint32_t, int>> sorted(const std::vector<Face>& faces) {
@@ -244,6 +141,16 @@ TEST_F(MeshFileTest, has_every_element_once_although_it_is_in_two_groups) {
   }
 }
 
+TEST_F(MeshFileTest, has_every_face_once_although_two_groups_of_one_name_have_it) {
+  const Mesh<2> made = make_box(BoxMesh<2>{.size = {1.0, 1.0}, .count = {2, 2}});
+  const auto path = save(made, "groups.msh", [] { // entities 2 and 3 are the bottom and the left
+    gmsh::model::addPhysicalGroup(1, {2, 3}, 99); // has its number for a name
+    gmsh::model::setPhysicalName(1, gmsh::model::addPhysicalGroup(1, {2}, 98), "99");
+  });
+  EXPECT_EQ(sorted(read_mesh_file<2>({.path = path}).boundary.at("99")),
+            (std::vector<std::pair<std::uint32_t, int>>{{0, 0}, {0, 2}, {1, 2}, {2, 0}}));
+}
+
 TEST_F(MeshFileTest, takes_a_face_between_two_elements_as_a_side_of_the_first) {
   const Mesh<2> made = make_tunnel(
       {.size = {2.0, 2.0}, .radius = 0.5, .radial = 1, .around = 8, .excavation = true});
@@ -253,12 +160,6 @@ TEST_F(MeshFileTest, takes_a_face_between_two_elements_as_a_side_of_the_first) {
     EXPECT_TRUE(std::ranges::binary_search(read.regions.at("excavation"), face.element));
   EXPECT_EQ(nodes_with_tag(read, "wall", ""), nodes_with_tag(made, "wall", ""));
 }
-
-const std::string disc_geometry = R"(SetFactory("OpenCASCADE");
-Disk(1) = {0, 0, 0, 20};
-Physical Surface("plate") = {1};
-Physical Curve("rim") = {1};
-)";
 
 TEST_F(MeshFileTest, of_a_geometry_is_meshed_by_gmsh_and_scaled) {
   // A polygon of n >= 2 pi r / h sides lacks at most 2 pi³ r² / (3 n²) of the circle, and the
@@ -308,98 +209,6 @@ TEST_F(MeshFileTest, leaves_the_number_of_threads_as_it_was) {
   read_mesh_file<2>({.path = written("disc.geo", disc_geometry), .element_size = 10.0});
   EXPECT_EQ(omp_get_max_threads(), 3);
   omp_set_num_threads(1);
-}
-
-class BadMeshFile : public MeshFileTest {
-protected:
-  template <int dim = 2> std::string refused(const MeshFile& file) const {
-    std::string text = refusal([&] { read_mesh_file<dim>(file); });
-    for (std::size_t at; (at = text.find(path("").string())) != std::string::npos;)
-      text.erase(at, path("").string().size());
-    return text;
-  }
-};
-
-TEST_F(BadMeshFile, is_named_with_what_gmsh_says_of_it) {
-  EXPECT_EQ(refused({.path = written("bad.geo", "Point(1) = {0, 0, 0;\n")}).substr(0, 42),
-            "mesh.file: Gmsh cannot use bad.geo: 'bad.g");
-  const auto path = written("bad.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 1 4\n");
-  EXPECT_EQ(refused({.path = path}),
-            "mesh.file: Gmsh cannot use bad.msh: Could not read nodes; Error loading 'bad.msh'");
-  EXPECT_EQ(refused({.path = "none.msh"}), "mesh.file: there is no file none.msh");
-  EXPECT_EQ(refused({.path = "mesh.inp"}),
-            "mesh.file: mesh.inp must be a .msh, .geo, .step or .stp file");
-  // After a failure the library is as good as new.
-  EXPECT_EQ(refused({.path = written("disc.geo", disc_geometry), .element_size = 5.0}),
-            "nothing was refused");
-}
-
-TEST_F(BadMeshFile, has_the_wrong_dimension) {
-  const auto solid =
-      save(make_box(BoxMesh<3>{.size = {1, 1, 1}, .count = {1, 1, 1}}), "solid.msh", [] {});
-  EXPECT_EQ(refused({.path = solid}), "mesh.file: solid.msh: it has elements of volume; give "
-                                      "case.dimension = 3, or a mesh of surfaces");
-  const auto plane =
-      save(make_box(BoxMesh<2>{.size = {1, 1}, .count = {1, 1}}), "plane.msh", [] {});
-  EXPECT_EQ(refused<3>({.path = plane}),
-            "mesh.file: plane.msh: it has no elements of volume; mesh it in 3D, or give "
-            "case.dimension = 2. When there are physical groups, Gmsh saves their elements only: "
-            "is there one of volumes?");
-  const auto bent = written("bent.geo", R"(SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1};)");
-  EXPECT_EQ(refused({.path = bent, .element_size = 0.5}),
-            "mesh.file: bent.geo: its z runs from -1 to 1 m; a mesh of the plane must have the "
-            "same z everywhere");
-}
-
-TEST_F(BadMeshFile, has_elements_that_kerf_does_not_have) {
-  const auto disc = written("disc.geo", disc_geometry + "Mesh.ElementOrder = 2;\n");
-  EXPECT_EQ(refused({.path = disc, .element_size = 5.0}),
-            "mesh.file: disc.geo: it has elements of type \"Triangle 6\"; kerf has tri3 and quad4. "
-            "Give Mesh.ElementOrder = 1 in Gmsh");
-  const auto prism = written("prism.geo", R"(SetFactory("OpenCASCADE"); Disk(1) = {0, 0, 0, 1};
-Extrude {0, 0, 1} { Surface{1}; Layers{2}; Recombine; }
-)");
-  EXPECT_EQ(refused<3>({.path = prism, .element_size = 0.5}),
-            "mesh.file: prism.geo: it has elements of type \"Prism 6\"; kerf has tet4 and hex8. "
-            "Mesh the body with these only");
-}
-
-TEST_F(BadMeshFile, has_groups_that_do_not_belong_to_the_body) {
-  Mesh<2> mesh = make_box(BoxMesh<2>{.size = {2, 1}, .count = {2, 1}});
-  const auto diagonal = save(mesh, "diagonal.msh", [] {
-    gmsh::model::addDiscreteEntity(1, 99);
-    gmsh::model::mesh::addElementsByType(99, 1, {100}, {1, 5});
-    gmsh::model::setPhysicalName(1, gmsh::model::addPhysicalGroup(1, {99}), "crack");
-  });
-  EXPECT_EQ(refused({.path = diagonal}),
-            "mesh.file: diagonal.msh: element 100 of the group \"crack\" is no side of an element "
-            "of the body; mesh both together, and join surfaces that touch with Coherence or "
-            "BooleanFragments");
-  const auto point = save(mesh, "point.msh", [] {
-    gmsh::model::addDiscreteEntity(0, 99);
-    gmsh::model::mesh::addNodes(0, 99, {50}, {7.0, 7.0, 0.25});
-    gmsh::model::mesh::addElementsByType(99, 15, {100}, {50});
-    gmsh::model::setPhysicalName(0, gmsh::model::addPhysicalGroup(0, {99}), "probe");
-  });
-  EXPECT_EQ(refused({.path = point}),
-            "mesh.file: point.msh: node 50 of the group \"probe\" belongs to no element of the "
-            "body; put the point into it, in Gmsh with Point{…} In Surface{…}");
-  mesh.regions["all"] = {0, 1};
-  EXPECT_EQ(refused({.path = save(mesh, "all.msh", [] {})}),
-            "mesh.file: all.msh: a group has the name \"all\", which means every node; give it "
-            "another name");
-}
-
-TEST_F(BadMeshFile, has_a_size_or_a_scale_that_makes_no_sense) {
-  const auto disc = written("disc.geo", disc_geometry);
-  EXPECT_EQ(refused({.path = disc, .scale = 0.0}),
-            "mesh.scale: the scale is 0; it must be positive");
-  EXPECT_EQ(refused({.path = disc, .element_size = -1.0}),
-            "mesh.element_size: it is -1 m; it must be positive");
-  EXPECT_EQ(refused({.path = "a.msh", .element_size = 1.0}),
-            "mesh.element_size: a.msh is a mesh, whose elements have a size; leave it out");
-  EXPECT_EQ(refused({.path = "a.step"}),
-            "mesh.element_size: a.step is a geometry; give the largest size of its elements");
 }
 
 } // namespace

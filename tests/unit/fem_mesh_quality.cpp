@@ -2,6 +2,7 @@
 #include "fem_core/mesh/quality.hpp"
 
 #include "fem_core/mesh/box.hpp"
+#include "fem_core/mesh/coincidence.hpp"
 #include "tests/unit/fem_mesh_checks.hpp"
 
 namespace kerf::fem {
@@ -96,24 +97,19 @@ TEST(CheckMesh, names_nodes_that_no_element_has_and_nodes_that_were_not_merged) 
   EXPECT_EQ(refusal([] { check_mesh(Mesh<3>(), "mesh"); }), "mesh: the mesh has no elements");
 }
 
-TEST(CheckMesh, finds_twins_on_both_sides_of_every_cell_it_sorts_nodes_into) {
-  // All nodes of this box lie on the faces of cells of the size of an edge; round-off throws the
-  // twins to either side.
-  for (std::uint32_t twin = 0; twin < 27; ++twin)
-    for (const double shift : {-1e-8, 1e-8}) {
-      Mesh<3> mesh = make_box(BoxMesh<3>{.size = {0.6, 0.6, 0.6}, .count = {2, 2, 2}});
-      const Vec<3> x = mesh.position(twin).array() + shift;
-      mesh.positions.insert(mesh.positions.end(), x.begin(), x.end());
-      mesh.blocks[0].nodes.insert(mesh.blocks[0].nodes.end(), {0, 1, 4, 3, 9, 10, 13, 12});
-      for (std::size_t k = mesh.blocks[0].nodes.size() - 8; k < mesh.blocks[0].nodes.size(); ++k)
-        if (mesh.blocks[0].nodes[k] == twin)
-          mesh.blocks[0].nodes[k] = 27;
-      const bool is_used = std::ranges::count(mesh.blocks[0].nodes, 27u) > 0;
-      EXPECT_NE(refusal([&] {
-                  check_mesh(mesh, "mesh");
-                }).find(is_used ? fmt::format("nodes {} and 27", twin) : "no element"),
-                std::string::npos);
-    }
+TEST(CoincidentNodes, are_found_wherever_they_lie_in_the_cells_that_nodes_are_sorted_into) {
+  // Cells begin half a cell before the first node. With cells of 0.3 the nodes are in their
+  // middles, with 0.6 every second one is on their faces, and its twin is in another cell.
+  const Mesh<3> box = make_box(BoxMesh<3>{.size = {0.6, 0.6, 0.6}, .count = {2, 2, 2}});
+  for (const double cell : {0.3, 0.6})
+    for (std::uint32_t twin = 0; twin < 27; ++twin)
+      for (const double shift : {-1e-8, 1e-8}) {
+        Mesh<3> mesh = box;
+        const Vec<3> x = mesh.position(twin).array() + shift;
+        mesh.positions.insert(mesh.positions.end(), x.begin(), x.end());
+        EXPECT_EQ(coincident_nodes(mesh, 1e-7, cell), std::pair(twin, 27u));
+        EXPECT_EQ(coincident_nodes(mesh, 1e-8, cell), std::nullopt);
+      }
 }
 
 TEST(CheckMesh, doubts_the_unit_of_a_mesh_that_waves_cannot_cross) {

@@ -123,6 +123,17 @@ TEST(TunnelMesh, lets_elements_grow_like_their_distance_when_no_grading_is_given
     EXPECT_NEAR(radius(layer), std::pow(10.0, static_cast<double>(layer) / 3.0), 1e-13);
 }
 
+TEST(TunnelMesh, has_an_opening_that_converges_with_the_square_of_the_element_size) {
+  // As of a disc: the opening is a polygon.
+  const auto error = [](std::uint32_t around) {
+    const Mesh<2> mesh =
+        make_tunnel({.size = {4.0, 4.0}, .radius = 1.0, .radial = 3, .around = around});
+    return volume_of(mesh) - (16.0 - pi);
+  };
+  EXPECT_GT(error(64), 0.0);
+  EXPECT_NEAR(std::log2(error(32) / error(64)), 2.0, 5e-3);
+}
+
 TEST(TunnelMesh, has_its_sides_where_they_belong_and_a_wall_that_looks_into_the_opening) {
   const TunnelMesh tunnel{.size = {6.0, 4.0}, .radius = 1.0, .radial = 3, .around = 16};
   const Mesh<2> mesh = make_tunnel(tunnel);
@@ -197,6 +208,13 @@ TEST(RoundMeshes, refuse_what_they_cannot_mesh_and_name_the_key) {
                     .around = 4}),
             "mesh.center: the middle of the opening is 0.5 m from the nearest side; that must be "
             "more than its radius, 1 m");
+  EXPECT_EQ(tunnel({.size = {5.6, 6.0},
+                    .center = Vec<2>(4.5, 4.94),
+                    .radius = 1.0,
+                    .radial = 3,
+                    .around = 8}),
+            "mesh.center: elements fold, because the opening is close to one side and far from "
+            "another; give it a place nearer to the middle, or a block that is wider there");
   EXPECT_EQ(tunnel({.size = {4.0, 4.0}, .radius = 1.0, .radial = 1, .around = 10}),
             "mesh.count: there are 10 elements around; they must be a multiple of 4");
 }

@@ -9,9 +9,12 @@ target_link_libraries(fem_mesh_tests PRIVATE kerf::fem_mesh kerf::fem_mesh_setti
 gtest_discover_tests(fem_mesh_tests)
 
 if(TARGET gmsh::gmsh)
-  add_executable(fem_mesh_file_tests ${CMAKE_CURRENT_LIST_DIR}/fem_mesh_file.cpp)
-  target_link_libraries(fem_mesh_file_tests PRIVATE kerf::fem_mesh_file gmsh::gmsh fmt::fmt
-    OpenMP::OpenMP_CXX kerf::warnings GTest::gtest_main)
+  add_executable(fem_mesh_file_tests
+    ${CMAKE_CURRENT_LIST_DIR}/fem_mesh_bad_file.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/fem_mesh_file.cpp)
+  target_link_libraries(fem_mesh_file_tests PRIVATE kerf::fem_mesh_file kerf::fem_mesh_settings
+    gmsh::gmsh fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX kerf::warnings
+    GTest::gtest_main)
   # What Gmsh and OpenCASCADE leave behind is theirs.
   gtest_discover_tests(fem_mesh_file_tests PROPERTIES ENVIRONMENT
     "LSAN_OPTIONS=suppressions=${CMAKE_CURRENT_LIST_DIR}/gmsh_leaks.txt")
