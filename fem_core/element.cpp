@@ -172,8 +172,7 @@ std::vector<StrainMatrix<dim>> strain_matrices(const std::vector<ElementPoint<di
     return {mean};
   const auto mean_dilatation = mean.template topRows<3>().colwise().sum().eval();
   for (StrainMatrix<dim>& B : strains) {
-    const auto missing =
-        ((mean_dilatation - B.template topRows<3>().colwise().sum()) / 3.0).eval();
+    const auto missing = ((mean_dilatation - B.template topRows<3>().colwise().sum()) / 3.0).eval();
     B.template topRows<3>().rowwise() += missing;
   }
   return strains;

@@ -18,15 +18,15 @@ using ElementMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_dofs<dim>, max_dofs<dim>>;
 /// Strain of the displacements of the corners; rows as in Symmetric.
 template <int dim>
-using StrainMatrix = Eigen::Matrix<double, dim == 2 ? 4 : 6, Eigen::Dynamic, 0, dim == 2 ? 4 : 6,
-                                   max_dofs<dim>>;
+using StrainMatrix =
+    Eigen::Matrix<double, dim == 2 ? 4 : 6, Eigen::Dynamic, 0, dim == 2 ? 4 : 6, max_dofs<dim>>;
 
 /// A point at which an element is integrated.
 template <int dim> struct ElementPoint {
   CornerValues N;        // shape functions N_a
   Corners<dim> gradient; // dN_a/dX, as columns, 1/m
-  /// The share alpha of the elements in the blended virtual work is part of the volume, Rojek (2008)
-  /// eqs 44 and 46; and so is the whole ring of axisymmetry, m³ (m² in 2D).
+  /// The share alpha of the elements in the blended virtual work is part of the volume, Rojek
+  /// (2008) eqs 44 and 46; and so is the whole ring of axisymmetry, m³ (m² in 2D).
   double volume = 0.0;
   double radius = 0.0; // of axisymmetry, m; 0: none
 
@@ -40,8 +40,8 @@ template <int dim> struct ElementPoint {
 template <int dim> struct Element {
   Shape shape = Shape::quad4;
   Space space = Space::plane;
-  Corners<dim> corners;            // m
-  CornerValues alpha;              // of the corners; empty: one
+  Corners<dim> corners; // m
+  CornerValues alpha;   // of the corners; empty: one
 };
 
 /// Shape functions and their derivatives over the reference element: [-1, 1]^dim of quad4 and hex8,

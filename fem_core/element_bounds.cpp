@@ -54,8 +54,8 @@ template <int dim> double cheap_omega2_of(const ElementModel<dim>& model) {
     const double norm =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, dim, dim>>(G, Eigen::EigenvaluesOnly)
             .eigenvalues()[dim - 1];
-    stiffness += point.volume * (std::max(lambda, 0.0) * trace.squaredNorm() +
-                                 2.0 * mu * (norm + hoop));
+    stiffness +=
+        point.volume * (std::max(lambda, 0.0) * trace.squaredNorm() + 2.0 * mu * (norm + hoop));
     volume += point.volume;
     square += point.volume * point.gradient.squaredNorm();
   }
@@ -64,10 +64,9 @@ template <int dim> double cheap_omega2_of(const ElementModel<dim>& model) {
     const double nodes = static_cast<double>(mass.size());
     const auto centred =
         (model.element.corners.colwise() - model.element.corners.rowwise().mean()).eval();
-    const double gamma =
-        std::sqrt(nodes) * (1.0 + std::sqrt(square / volume) * centred.norm());
-    stiffness += model.hourglass * square / (3.0 * dim * nodes) * gamma * gamma *
-                 (dim == 2 ? 1.0 : 4.0);
+    const double gamma = std::sqrt(nodes) * (1.0 + std::sqrt(square / volume) * centred.norm());
+    stiffness +=
+        model.hourglass * square / (3.0 * dim * nodes) * gamma * gamma * (dim == 2 ? 1.0 : 4.0);
   }
   return stiffness / mass.minCoeff();
 }
@@ -79,8 +78,7 @@ LargestOmega2 largest_omega2(std::size_t num_elements,
   const auto size = static_cast<std::int64_t>(num_elements);
 #pragma omp parallel for schedule(static) if (size > 1000)
   for (std::int64_t e = 0; e < size; ++e)
-    bound[static_cast<std::size_t>(e)] =
-        cheap_omega2_of<dim>(model(static_cast<std::size_t>(e)));
+    bound[static_cast<std::size_t>(e)] = cheap_omega2_of<dim>(model(static_cast<std::size_t>(e)));
   std::vector<std::uint32_t> order(num_elements);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

@@ -17,8 +17,8 @@ Gradient<double, 3> gradient_of(const Matrix<3>& H, double) {
   return {H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), H(2, 0), H(2, 1), H(2, 2)};
 }
 
-template <int dim> void add(Symmetric<double, dim>& sum, double factor,
-                            const Symmetric<double, dim>& value) {
+template <int dim>
+void add(Symmetric<double, dim>& sum, double factor, const Symmetric<double, dim>& value) {
   for (int k = 0; k < sum.size; ++k)
     sum[k] += factor * value[k];
 }
@@ -75,8 +75,8 @@ template <int dim> ElementState<dim> Engine<dim>::element_state(std::uint32_t el
     const auto mean = [&](const std::vector<double>& array, std::size_t size, std::size_t k) {
       double sum = 0.0;
       for (std::size_t q = 0; q < points; ++q)
-        sum += array[((place / batch_size * points + q) * size + k) * batch_size +
-                     place % batch_size];
+        sum +=
+            array[((place / batch_size * points + q) * size + k) * batch_size + place % batch_size];
       return sum / static_cast<double>(points);
     };
     for (int k = 0; k < state.stress.size; ++k)
@@ -91,14 +91,16 @@ template <int dim> ElementState<dim> Engine<dim>::element_state(std::uint32_t el
     // Elastic energy of the mean stress, of an isotropic solid.
     const double young = model.moduli.young(), nu = young / (2.0 * model.moduli.mu) - 1.0;
     const double pressure = trace(state.stress);
-    state.energy = volume * ((1.0 + nu) * contract(state.stress, state.stress) -
-                             nu * pressure * pressure) / (2.0 * young);
+    state.energy = volume *
+                   ((1.0 + nu) * contract(state.stress, state.stress) - nu * pressure * pressure) /
+                   (2.0 * young);
     return state;
   }
   Corners<dim> u(dim, model.element.corners.cols());
   const auto nodes = mesh_.nodes_of_element(element);
   const Vec<dim> first = displacement_[patches_.row_of_node[nodes[0]]];
-  for (std::size_t a = 0; a < nodes.size(); ++a) // only differences strain; the hoop needs them whole
+  for (std::size_t a = 0; a < nodes.size();
+       ++a) // only differences strain; the hoop needs them whole
     u.col(static_cast<Eigen::Index>(a)) =
         displacement_[patches_.row_of_node[nodes[a]]] -
         (settings_.plane == Plane::axisymmetric ? Vec<dim>::Zero().eval() : first);

@@ -4,9 +4,9 @@
 namespace kerf::fem {
 
 /// Energies at t_n and the work done until then, J (per metre of thickness in 2D). The balance is
-/// kinetic + elastic + dissipated + hourglass + damped - external_work - interface_work, which stays
-/// what it was at the start: of linear bodies to round-off, otherwise to second order in the time
-/// step.
+/// kinetic + elastic + dissipated + hourglass + damped - external_work - interface_work, which
+/// stays what it was at the start: of linear bodies to round-off, otherwise to second order in the
+/// time step.
 struct Energies {
   double kinetic = 0.0;        // 1/2 v^(n-1/2) . M v^(n+1/2)
   double elastic = 0.0;        // work of the stress that was not dissipated

@@ -50,9 +50,9 @@ template <int dim> void Engine<dim>::assign_materials() {
     } else {
       const auto found = mesh_.regions.find(setting.region);
       if (found == mesh_.regions.end())
-        throw InputError(fmt::format("materials[{}].region", k),
-                         fmt::format("the mesh has no elements with the tag \"{}\"",
-                                     setting.region));
+        throw InputError(
+            fmt::format("materials[{}].region", k),
+            fmt::format("the mesh has no elements with the tag \"{}\"", setting.region));
       std::for_each(found->second.begin(), found->second.end(), give);
     }
     if (count == 0)
@@ -61,8 +61,8 @@ template <int dim> void Engine<dim>::assign_materials() {
   }
   const auto without = std::find(material_of_.begin(), material_of_.end(), none);
   if (without != material_of_.end())
-    throw InputError("materials", fmt::format("element {} has no material",
-                                              without - material_of_.begin()));
+    throw InputError("materials",
+                     fmt::format("element {} has no material", without - material_of_.begin()));
 }
 
 template <int dim> void Engine<dim>::set_weights(std::span<const double> alpha) {
@@ -77,8 +77,8 @@ template <int dim> void Engine<dim>::set_weights(std::span<const double> alpha) 
   active_.clear();
   for (std::uint32_t e = 0; e < mesh_.num_elements(); ++e) {
     const auto nodes = mesh_.nodes_of_element(e);
-    if (alpha_.empty() || std::any_of(nodes.begin(), nodes.end(),
-                                      [&](std::uint32_t a) { return alpha_[a] > 0.0; }))
+    if (alpha_.empty() ||
+        std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t a) { return alpha_[a] > 0.0; }))
       active_.push_back(e);
   }
   make_groups();
@@ -132,10 +132,10 @@ template <int dim> void Engine<dim>::make_groups() {
     std::vector<double> lengths(elements.size());
     for (std::size_t k = elements.size(); k-- > 0;) { // what fills a batch comes after the element
       double volume = 0.0;
-      for (const ElementPoint<dim>& point : points_of(
-               Element<dim>{.shape = patches_.groups[g].shape,
-                            .corners = mesh_.corners(elements[k]),
-                            .alpha = {}}))
+      for (const ElementPoint<dim>& point :
+           points_of(Element<dim>{.shape = patches_.groups[g].shape,
+           .corners = mesh_.corners(elements[k]),
+           .alpha = {}}))
         volume += point.volume;
       lengths[k] = std::pow(volume, 1.0 / dim);
       place_[elements[k]] = static_cast<std::uint32_t>(k);
@@ -169,25 +169,28 @@ template <int dim> void Engine<dim>::make_groups() {
   reference_ = Rows<dim>(patches_.num_copies());
   for (const Patch& patch : patches_.patches)
     for (std::uint32_t k = 0; k < patch.num_rows(); ++k) {
-      const std::uint32_t row = k < patch.num_own
-                                    ? patch.first_row + k
-                                    : patches_.shared[patch.first_shared + k - patch.num_own];
-      reference_[patch.first_copy + k] = mesh_.position(patches_.node_of_row[row]);
+      const bool own = k < patch.num_own;
+      const std::uint32_t shared = patch.first_shared + k - patch.num_own;
+      const std::uint32_t row = own ? patch.first_row + k : patches_.shared[shared];
+      Vec<dim> X = mesh_.position(patches_.node_of_row[row]);
+      for (int a = 0; a < dim && !own; ++a)
+        X[a] += periods_of(patches_.image[shared], a) * mesh_.period.length[a];
+      reference_[patch.first_copy + k] = X;
     }
 }
 
 template <int dim> ElementModel<dim> Engine<dim>::model_of(std::uint32_t element) const {
   const Material& material = settings_.materials[material_of_[element]].material;
-  ElementModel<dim> model{
-      .element = {.shape = mesh_.shape_of(element),
-                  .space = settings_.plane == Plane::axisymmetric ? Space::axisymmetric
-                                                                  : Space::plane,
-                  .corners = mesh_.corners(element),
-                  .alpha = {}},
-      .formulation = material.formulation,
-      .moduli = material.bound(),
-      .hourglass = material.hourglass_stiffness * material.bound().uniaxial(),
-      .density = material.density()};
+  ElementModel<dim> model{.element = {.shape = mesh_.shape_of(element),
+                                      .space = settings_.plane == Plane::axisymmetric
+                                                   ? Space::axisymmetric
+                                                   : Space::plane,
+                                      .corners = mesh_.corners(element),
+                                      .alpha = {}},
+                          .formulation = material.formulation,
+                          .moduli = material.bound(),
+                          .hourglass = material.hourglass_stiffness * material.bound().uniaxial(),
+                          .density = material.density()};
   if (!alpha_.empty()) {
     const auto nodes = mesh_.nodes_of_element(element);
     model.element.alpha.resize(static_cast<Eigen::Index>(nodes.size()));
@@ -200,8 +203,8 @@ template <int dim> ElementModel<dim> Engine<dim>::model_of(std::uint32_t element
 template <int dim> StepLimit Engine<dim>::step_limit() const {
   if (active_.empty())
     return {.omega2 = 0.0, .limited_by = "no element"};
-  const LargestOmega2 largest = largest_omega2<dim>(
-      active_.size(), [this](std::size_t k) { return model_of(active_[k]); });
+  const LargestOmega2 largest =
+      largest_omega2<dim>(active_.size(), [this](std::size_t k) { return model_of(active_[k]); });
   return {.omega2 = largest.value,
           .limited_by = fmt::format("element {}", active_[largest.element])};
 }
@@ -211,8 +214,7 @@ void Engine<dim>::inverse_mass(std::span<const std::uint32_t> nodes, std::span<d
   for (std::size_t k = 0; k < nodes.size(); ++k)
     for (int i = 0; i < dim; ++i) {
       const double mass = mass_[patches_.row_of_node[nodes[k]]];
-      out[k * dim + i] =
-          mass > 0.0 && !boundary_.is_prescribed(nodes[k], i) ? 1.0 / mass : 0.0;
+      out[k * dim + i] = mass > 0.0 && !boundary_.is_prescribed(nodes[k], i) ? 1.0 / mass : 0.0;
     }
 }
 
@@ -278,8 +280,8 @@ void Engine<dim>::motion(std::span<const std::uint32_t> nodes, std::span<double>
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const std::uint32_t row = patches_.row_of_node[nodes[k]];
     for (int i = 0; i < dim; ++i) {
-      position[k * dim + i] = mesh_.positions[std::size_t{nodes[k]} * dim + i] +
-                              displacement_[row][i];
+      position[k * dim + i] =
+          mesh_.positions[std::size_t{nodes[k]} * dim + i] + displacement_[row][i];
       const bool moved = boundary_.is_prescribed(nodes[k], i) && mass_[row] > 0.0;
       velocity[k * dim + i] =
           moved ? boundary_.velocity(nodes[k], i, step_, time_step_) : velocity_[row][i];
@@ -299,7 +301,8 @@ template <int dim> void Engine<dim>::compute_own_forces() {
 /// own rows while they are in the cache.
 template <int dim> void Engine<dim>::compute_forces(bool finish) {
   // There has been no increment before the first step.
-  const PatchMotion<dim> motion{reference_, displacement_, velocity_, step_ == 0 ? 0.0 : time_step_};
+  const PatchMotion<dim> motion{reference_, displacement_, velocity_,
+                                step_ == 0 ? 0.0 : time_step_};
   const StepSettings<dim> step = step_settings();
   const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
   std::vector<ElementWork> work(patches_.patches.size());
@@ -396,10 +399,9 @@ template <int dim> void Engine<dim>::integrate() {
   for (std::size_t k = 0; k < moved_.size(); ++k) {
     const Moved& moved = moved_[k];
     const double after = velocity_[moved.row][moved.component];
-    const double reaction =
-        mass_[moved.row] * ((after - moved_before[k]) / time_step_ -
-                            settings_.gravity[moved.component]) -
-        force_[moved.row][moved.component]; // N
+    const double reaction = mass_[moved.row] * ((after - moved_before[k]) / time_step_ -
+                                                settings_.gravity[moved.component]) -
+                            force_[moved.row][moved.component]; // N
     reactions += {.before = 0.5 * time_step_ * reaction * moved_before[k],
                   .after = 0.5 * time_step_ * reaction * after};
     displacement_[moved.row][moved.component] =
@@ -470,8 +472,8 @@ template <int dim> Energies Engine<dim>::energies() const {
       const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
       const GroupKernel& group = groups_[patch.group];
       if (!group.increments) // which computing the energy does not change
-        of_patches[static_cast<std::size_t>(p)] =
-            compute_patch<dim>(patches_, patch, const_cast<GroupKernel&>(group), motion, true, scratch);
+        of_patches[static_cast<std::size_t>(p)] = compute_patch<dim>(
+            patches_, patch, const_cast<GroupKernel&>(group), motion, true, scratch);
     }
   }
   for (const ElementWork& of_patch : of_patches) {

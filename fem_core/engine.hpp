@@ -26,8 +26,8 @@ template <int dim> struct ElementState {
 };
 
 /// An explicit finite element body with lumped mass. Points are its nodes; arrays of vectors are
-/// [n][dim]. Nodes without mass are inert: they keep their place. The results have the same bits for
-/// any number of threads.
+/// [n][dim]. Nodes without mass are inert: they keep their place. The results have the same bits
+/// for any number of threads.
 ///
 ///     Engine<2> engine(make_box<2>({.size = …, .count = …}), {.materials = …});
 ///     engine.start(0.8 * 2.0 / std::sqrt(engine.step_limit().omega2));
@@ -127,8 +127,8 @@ private:
   std::vector<GroupKernel> groups_;
   std::vector<std::uint32_t> group_of_; // [num_elements]
   std::vector<std::uint32_t> place_;    // [num_elements] in the arrays of the group
-  Rows<dim> reference_;              // of the rows of every patch
-  std::vector<double> mass_;         // [rows]
+  Rows<dim> reference_;                 // of the rows of every patch
+  std::vector<double> mass_;            // [rows]
   std::vector<Moved> moved_;
 
   // At t_n.
@@ -140,10 +140,10 @@ private:
   Rows<dim> parts_; // of special rows, what each patch adds
   bool forces_are_current_ = false;
   std::vector<std::uint32_t> interface_rows_;
-  Rows<dim> interface_force_; // [rows]; empty until there is one
-  ElementWork element_work_{}; // of all steps
+  Rows<dim> interface_force_;            // [rows]; empty until there is one
+  ElementWork element_work_{};           // of all steps
   std::vector<RowSums<dim>> patch_sums_; // of the plain rows of the last step
-  RowSums<dim> sums_;          // of all rows of the last step
+  RowSums<dim> sums_;                    // of all rows of the last step
   WorkBook damped_work_, reaction_work_, gravity_work_, interface_work_;
 };
 

@@ -58,8 +58,8 @@ void advance_rows(const StepSettings<dim>& step, std::size_t count, const double
 
 template <int dim>
 void advance(const StepSettings<dim>& step, std::size_t count, const double* mass,
-             const double* force, const double* prescribed, double* velocity,
-             double* displacement, RowSums<dim>& sums) {
+             const double* force, const double* prescribed, double* velocity, double* displacement,
+             RowSums<dim>& sums) {
   if (prescribed != nullptr || step.mass_damping > 0.0 || step.local_damping > 0.0)
     advance_rows<dim, true>(step, count, mass, force, prescribed, velocity, displacement, sums);
   else

@@ -30,8 +30,7 @@ void copy_rows(const Patches& patches, const Patch& patch, Value value, Rows<dim
 }
 
 /// The part of an array of a group that belongs to a patch; null when there is no array.
-template <class Number>
-auto* part(Number& array, std::size_t per_batch, const Patch& patch) {
+template <class Number> auto* part(Number& array, std::size_t per_batch, const Patch& patch) {
   return array.empty() ? nullptr : array.data() + patch.first_batch * per_batch;
 }
 
@@ -67,8 +66,8 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
   }
   const Rows<dim>& moved = rate || group.increments ? motion.velocity : motion.displacement;
   copy_rows(
-      patches, patch,
-      [&](std::uint32_t row, double* to) { std::memcpy(to, moved.at(row), size); }, scratch.motion);
+      patches, patch, [&](std::uint32_t row, double* to) { std::memcpy(to, moved.at(row), size); },
+      scratch.motion);
   if (viscous)
     copy_rows(
         patches, patch,
@@ -111,10 +110,10 @@ PatchKernel find_kernel(const KernelKey& key) {
 
 template class PatchScratch<2>;
 template class PatchScratch<3>;
-template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const PatchMotion<2>&,
-                                   bool, PatchScratch<2>&);
-template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&, const PatchMotion<3>&,
-                                   bool, PatchScratch<3>&);
+template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&,
+                                   const PatchMotion<2>&, bool, PatchScratch<2>&);
+template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&,
+                                   const PatchMotion<3>&, bool, PatchScratch<3>&);
 
 } // namespace fem
 } // namespace kerf

@@ -54,7 +54,8 @@ public:
 /// @param wants_energy  instead: work.internal is the energy at u; nothing is followed
 template <int dim>
 ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
-                          const PatchMotion<dim>& motion, bool wants_energy, PatchScratch<dim>& scratch);
+                          const PatchMotion<dim>& motion, bool wants_energy,
+                          PatchScratch<dim>& scratch);
 
 /// The kernel of this machine's instructions; null when there is none of the kind.
 PatchKernel find_kernel(const KernelKey& key);

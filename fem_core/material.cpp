@@ -68,8 +68,8 @@ void check(const Material& material, Shape shape, Plane plane) {
   const bool simplex = shape == Shape::tri3 || shape == Shape::tet4;
   const Formulation formulation = material.formulation;
   const std::string name = name_of(formulation);
-  if (simplex && (formulation == Formulation::mean_dilatation ||
-                  formulation == Formulation::one_point))
+  if (simplex &&
+      (formulation == Formulation::mean_dilatation || formulation == Formulation::one_point))
     throw InputError("formulation",
                      fmt::format("{} is of quad4 and hex8; {} has full or nodal_pressure", name,
                                  fem::name_of(shape)));
@@ -87,8 +87,7 @@ void check(const Material& material, Shape shape, Plane plane) {
                                                 name));
   if (std::holds_alternative<NeoHookean>(material.law) &&
       (formulation == Formulation::mean_dilatation || formulation == Formulation::nodal_pressure))
-    throw InputError("formulation",
-                     fmt::format("neo_hookean has full or one_point, not {}", name));
+    throw InputError("formulation", fmt::format("neo_hookean has full or one_point, not {}", name));
 }
 
 GroupKernel make_group(const Material& material, Shape shape, Plane plane,
@@ -107,8 +106,8 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
     group.parameters = std::make_shared<const LawType>(law);
     group.law.parameters = group.parameters.get();
     if constexpr (std::is_base_of_v<NeoHookean, LawType>) {
-      key.response = plane == Plane::stress ? Response::hyperelastic_plane_stress
-                                            : Response::hyperelastic;
+      key.response =
+          plane == Plane::stress ? Response::hyperelastic_plane_stress : Response::hyperelastic;
     } else {
       constexpr bool linear = LinearLaw<LawType>;
       group.increments = material.finite_strain || !linear;
@@ -129,17 +128,18 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
           const auto initial = law.initial_history(lengths[e]);
           for (std::size_t q = 0; q < points; ++q)
             for (std::size_t k = 0; k < initial.size(); ++k)
-              group.initial_history[((e / batch_size * points + q) * initial.size() + k) * batch_size +
-                            e % batch_size] = initial[k];
+              group.initial_history[((e / batch_size * points + q) * initial.size() + k) *
+                                        batch_size +
+                                    e % batch_size] = initial[k];
         }
       }
     }
   });
-  group.law.respond = dispatch(baseline::law_call, avx2::law_call, avx512::law_call)(
-      {.law = material.law.index(),
-       .dim = dimension_of(shape),
-       .plane_stress = plane == Plane::stress,
-       .increments = group.increments});
+  group.law.respond = dispatch(baseline::law_call, avx2::law_call,
+                               avx512::law_call)({.law = material.law.index(),
+                                                  .dim = dimension_of(shape),
+                                                  .plane_stress = plane == Plane::stress,
+                                                  .increments = group.increments});
   group.compute = find_kernel(key);
   group.points = static_cast<int>(points);
   if (material.formulation == Formulation::one_point) {

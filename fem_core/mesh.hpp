@@ -29,9 +29,9 @@ struct Face {
 
 /// Nodes and elements in the reference configuration. Elements are numbered through the blocks.
 template <int dim> struct Mesh {
-  std::vector<double> positions;                      // [num_nodes][dim] m
-  std::vector<Block> blocks;                          // no two of one shape
-  std::map<std::string, std::vector<Face>> boundary;  // faces by tag
+  std::vector<double> positions;                               // [num_nodes][dim] m
+  std::vector<Block> blocks;                                   // no two of one shape
+  std::map<std::string, std::vector<Face>> boundary;           // faces by tag
   std::map<std::string, std::vector<std::uint32_t>> regions;   // elements by tag, ascending
   std::map<std::string, std::vector<std::uint32_t>> node_sets; // nodes by tag, ascending
   Period<dim> period; // an element across the end of the period joins both ends of the node list

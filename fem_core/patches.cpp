@@ -3,17 +3,20 @@
 #include "common/spatial_order.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
-#include <cstdlib>
+#include <map>
+#include <utility>
 
 namespace kerf::fem {
 namespace {
 
+constexpr std::uint8_t at_home = 1 + 3 + 9;
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 /// Elements of a patch: as many as keep the rows of its nodes in the cache of one core.
-std::size_t patch_size(Shape shape) {
-  if (getenv("PS")) return atoi(getenv("PS"));
+constexpr std::size_t patch_size(Shape shape) {
   switch (shape) {
   case Shape::hex8:
     return 1024;
@@ -25,6 +28,27 @@ std::size_t patch_size(Shape shape) {
     break;
   }
   return 2048;
+}
+
+/// The image of each corner of an element.
+template <int dim>
+std::array<std::uint8_t, 8> images_of(const Mesh<dim>& mesh, std::uint32_t element) {
+  std::array<std::uint8_t, 8> images;
+  images.fill(at_home);
+  if ((mesh.period.length.array() == 0.0).all())
+    return images;
+  const auto nodes = mesh.nodes_of_element(element);
+  const auto corners = mesh.corners(element);
+  for (std::size_t c = 0; c < nodes.size(); ++c) {
+    int digit = 1;
+    for (int a = 0; a < dim; ++a, digit *= 3)
+      if (mesh.period.length[a] > 0.0)
+        images[c] = static_cast<std::uint8_t>(
+            images[c] + digit * std::lround((corners(a, static_cast<Eigen::Index>(c)) -
+                                             mesh.position(nodes[c])[a]) /
+                                            mesh.period.length[a]));
+  }
+  return images;
 }
 
 /// The elements of a patch in the order of their lanes. Simplices of one vector come from all over
@@ -79,12 +103,16 @@ Patches::Patches(const Mesh<dim>& mesh, std::vector<ElementGroup> all,
                          .num_shared = 0,
                          .first_copy = 0});
       element_of[g].insert(element_of[g].end(), lanes.begin(), lanes.end());
-      for (const std::uint32_t e : of_patch)
-        for (const std::uint32_t a : mesh.nodes_of_element(e)) {
-          if (patch_of[a] != none && patch_of[a] != number)
+      for (const std::uint32_t e : of_patch) {
+        const auto images = images_of(mesh, e);
+        const auto corners = mesh.nodes_of_element(e);
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+          const std::uint32_t a = corners[c];
+          if ((patch_of[a] != none && patch_of[a] != number) || images[c] != at_home)
             is_special[a] = true;
           patch_of[a] = number;
         }
+      }
     }
   }
 
@@ -112,36 +140,37 @@ Patches::Patches(const Mesh<dim>& mesh, std::vector<ElementGroup> all,
   }
   num_plain = static_cast<std::uint32_t>(node_of_row.size());
 
-  std::vector<std::uint32_t> place(mesh.num_nodes(), none); // among the shared ones of its patch
+  // Among the shared ones of a patch, by node and image.
+  std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint32_t> place;
   std::uint32_t copies = 0;
   for (Patch& patch : patches) {
     patch.first_copy = copies;
     patch.first_shared = static_cast<std::uint32_t>(shared.size());
     const auto count = static_cast<std::size_t>(nodes_of(groups[patch.group].shape));
     auto& of_group = nodes[patch.group];
-    of_group.resize(of_group.size() + (patch.num_elements + batch_size - 1) / batch_size *
-                                          batch_size * count);
-    std::vector<std::uint32_t> met;
+    of_group.resize(of_group.size() +
+                    (patch.num_elements + batch_size - 1) / batch_size * batch_size * count);
+    place.clear();
     for_nodes(patch, [&](std::uint32_t a, std::size_t k, std::size_t c) {
       if (row_of_node[a] == none)
         give_row(a);
       const std::uint32_t row = row_of_node[a];
       std::uint32_t local = row - patch.first_row;
       if (row >= num_plain) {
-        if (place[a] == none) {
-          place[a] = static_cast<std::uint32_t>(met.size());
-          met.push_back(a);
+        const std::uint8_t seen = images_of(mesh, element_of[patch.group][k])[c];
+        const auto [entry, is_new] =
+            place.try_emplace({a, seen}, static_cast<std::uint32_t>(place.size()));
+        if (is_new) {
           shared.push_back(row);
+          image.push_back(seen);
         }
-        local = patch.num_own + place[a];
+        local = patch.num_own + entry->second;
       }
       of_group[(k / batch_size * count + c) * batch_size + k % batch_size] =
           static_cast<std::uint16_t>(local);
     });
-    patch.num_shared = static_cast<std::uint32_t>(met.size());
+    patch.num_shared = static_cast<std::uint32_t>(place.size());
     copies += patch.num_rows();
-    for (const std::uint32_t a : met)
-      place[a] = none;
   }
   num_special = static_cast<std::uint32_t>(node_of_row.size()) - num_plain;
   for (std::uint32_t a = 0; a < mesh.num_nodes(); ++a)

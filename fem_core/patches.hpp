@@ -10,6 +10,11 @@
 
 namespace kerf::fem {
 
+/// Periods along an axis that an image of Patches is moved by.
+constexpr int periods_of(std::uint8_t image, int axis) {
+  return image / (axis == 0 ? 1 : axis == 1 ? 3 : 9) % 3 - 1;
+}
+
 /// Elements that one kernel computes.
 struct ElementGroup {
   Shape shape = Shape::quad4;
@@ -61,6 +66,9 @@ public:
   /// [groups][batches][nodes][batch_size] row of the patch: own ones, then shared ones.
   std::vector<std::vector<std::uint16_t>> nodes;
   std::vector<std::uint32_t> shared; // special rows of each patch
+  /// The image of a periodic mesh that a patch sees of a shared row: three digits to the base
+  /// three, x lowest, of how many periods it is moved along each axis plus one.
+  std::vector<std::uint8_t> image;
   /// Special row k has the entries of `shared` from first_part[k] on, in the order of the patches.
   std::vector<std::uint32_t> first_part, parts;
 };

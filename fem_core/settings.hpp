@@ -21,7 +21,7 @@ enum class Motion {
 /// Motion that is prescribed for some nodes, selected either by a tag or by a box.
 template <int dim> struct BoundarySetting {
   std::string tag; // empty: by the box
-  std::optional<Box<dim>> box;
+  std::optional<Box<dim>> box{};
   std::array<bool, dim> components;
   Motion motion = Motion::fixed;
   Vec<dim> velocity = Vec<dim>::Zero();  // m/s
@@ -59,15 +59,15 @@ template <int dim> struct InitialSetting {
 /// Where several settings meet, the last one counts.
 template <int dim> struct MaterialSetting {
   Material material;
-  std::string region;
-  std::optional<Box<dim>> box;
+  std::string region{};
+  std::optional<Box<dim>> box{};
 };
 
 template <int dim> struct Settings {
   std::vector<MaterialSetting<dim>> materials;
   Plane plane = Plane::strain; // of 2D
-  std::vector<BoundarySetting<dim>> boundary;
-  std::vector<InitialSetting<dim>> initial;
+  std::vector<BoundarySetting<dim>> boundary{};
+  std::vector<InitialSetting<dim>> initial{};
   Vec<dim> gravity = Vec<dim>::Zero(); // m/s²
   double mass_damping = 0.0;           // a of the force -a m v, 1/s
   double local_damping = 0.0;          // share of the resultant that opposes the motion, 0 to 1

@@ -20,10 +20,9 @@ struct StateParts {
   /// Forces are computed anew in every step, and what was before t_n is overwritten.
   template <int dim, class Visit> static void of(Engine<dim>& engine, Visit& visit) {
     auto& [mesh, settings, boundary, material_of, alpha, active, patches, groups, group_of, place,
-           reference, mass, moved, time_step, step, displacement, velocity, initial_displacement, force,
-           parts,
-           forces_are_current, interface_rows, interface_force, element_work, patch_sums, sums,
-           damped_work, reaction_work, gravity_work, interface_work] = engine;
+           reference, mass, moved, time_step, step, displacement, velocity, initial_displacement,
+           force, parts, forces_are_current, interface_rows, interface_force, element_work,
+           patch_sums, sums, damped_work, reaction_work, gravity_work, interface_work] = engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);

@@ -8,9 +8,7 @@ namespace kerf::KERF_ISA {
 
 using fem::Symmetric;
 
-template <int dim> struct Matrix {
-  Lanes m[dim][dim];
-};
+template <int dim> struct Matrix { Lanes m[dim][dim]; };
 template <int dim> using Tensor = Symmetric<Lanes, dim>;
 
 /// J = dx/dxi at a point, without the factor of the modes, and its cofactors; J^-1 = cof^T / det.

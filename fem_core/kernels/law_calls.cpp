@@ -17,15 +17,14 @@ template <class Law, int dim> void increment(const void* parameters, LawPoint<di
   Lanes history[Law::history + 1];
   for (int k = 0; k < Law::history; ++k)
     history[k] = load(point.history + k * batch_size);
-  point.dissipated = law.template update<LaneMath, dim>(point.stress, history, point.strain,
-                                                        point.time_step);
+  point.dissipated =
+      law.template update<LaneMath, dim>(point.stress, history, point.strain, point.time_step);
   for (int k = 0; k < Law::history; ++k)
     store(point.history + k * batch_size, history[k]);
 }
 
 template <class Law, int dim> void whole(const void* parameters, LawPoint<dim>& point) {
-  point.stress =
-      static_cast<const Law*>(parameters)->template stress<LaneMath, dim>(point.strain);
+  point.stress = static_cast<const Law*>(parameters)->template stress<LaneMath, dim>(point.strain);
 }
 
 template <class Law, int dim> Call call_of(bool increments) {

@@ -1,5 +1,6 @@
-// The one-point element: the mean of the gradient over the element, and forces against the hourglass
-// modes that it does not see; D. P. Flanagan and T. Belytschko, doi:10.1002/nme.1620170504.
+// The one-point element: the mean of the gradient over the element, and forces against the
+// hourglass modes that it does not see; D. P. Flanagan and T. Belytschko,
+// doi:10.1002/nme.1620170504.
 //
 // In the modes of shapes.hpp the volume is a short polynomial of the modes of the corners, and its
 // derivative with respect to them is the mean gradient.
@@ -34,8 +35,7 @@ template <Shape shape> struct FieldModes {
         m[2][i] = q.xi_eta;
       } else {
         const HexModes h = HexModes::of(w);
-        const Lanes mode[7] = {h.xi,       h.eta,     h.zeta,       h.xi_eta,
-                               h.eta_zeta, h.zeta_xi, h.xi_eta_zeta};
+        const Lanes mode[7] = {h.xi, h.eta, h.zeta, h.xi_eta, h.eta_zeta, h.zeta_xi, h.xi_eta_zeta};
         for (int k = 0; k < 7; ++k)
           m[k][i] = mode[k];
       }
@@ -122,7 +122,8 @@ template <Shape shape> struct MeanGradient {
 
 /// What is left of the hourglass modes of a field when its mean gradient is taken off.
 template <Shape shape>
-KERF_INLINE void hourglass_part(const FieldModes<shape>& field, const Matrix<shape == Shape::quad4 ? 2 : 3>& gradient,
+KERF_INLINE void hourglass_part(const FieldModes<shape>& field,
+                                const Matrix<shape == Shape::quad4 ? 2 : 3>& gradient,
                                 const FieldModes<shape>& x,
                                 Lanes (&q)[ModesOf<shape>::hourglass][ShapeOf<shape>::dim]) {
   for (int k = 0; k < ModesOf<shape>::hourglass; ++k) {
@@ -158,110 +159,111 @@ void one_point_kernel(PatchView& patch) {
   constexpr int hourglass = ModesOf<shape>::hourglass, first_mode = ModesOf<shape>::first_hourglass;
   PatchView view = patch;
   WorkLanes work;
-  for_vectors(view, [&](std::size_t first, int count) __attribute__((always_inline)) {
-    OnePoint<shape> e{view, first, count};
-    const std::uint16_t* node = view.nodes + place(first, nodes);
-    Columns<dim> corner[nodes];
-    FieldModes<shape> x, u;
-    for (int a = 0; a < nodes; ++a)
-      corner[a] = gather<dim>(view.motion, node + a * batch_size);
-    u.set(corner);
-    for (int a = 0; a < nodes; ++a)
-      corner[a] = gather<dim>(view.reference, node + a * batch_size);
-    x.set(corner);
+  for_vectors(
+      view, [&](std::size_t first, int count) __attribute__((always_inline)) {
+        OnePoint<shape> e{view, first, count};
+        const std::uint16_t* node = view.nodes + place(first, nodes);
+        Columns<dim> corner[nodes];
+        FieldModes<shape> x, u;
+        for (int a = 0; a < nodes; ++a)
+          corner[a] = gather<dim>(view.motion, node + a * batch_size);
+        u.set(corner);
+        for (int a = 0; a < nodes; ++a)
+          corner[a] = gather<dim>(view.reference, node + a * batch_size);
+        x.set(corner);
 
-    // Deformation.
-    const MeanGradient<shape> acting(x); // on which the force acts; total: the reference
-    Deformation<dim> d;
-    PointForce<dim> f;
-    const Lanes share = view.alpha == nullptr ? broadcast(1.0) : load(view.alpha + e.at(0));
-    FieldModes<shape> straining = x;
-    if constexpr (kinematics == Kinematics::rate)
-      for (int k = 0; k < ModesOf<shape>::all; ++k)
+        // Deformation.
+        const MeanGradient<shape> acting(x); // on which the force acts; total: the reference
+        Deformation<dim> d;
+        PointForce<dim> f;
+        const Lanes share = view.alpha == nullptr ? broadcast(1.0) : load(view.alpha + e.at(0));
+        FieldModes<shape> straining = x;
+        if constexpr (kinematics == Kinematics::rate)
+          for (int k = 0; k < ModesOf<shape>::all; ++k)
+            for (int i = 0; i < dim; ++i)
+              straining.m[k][i] -= 0.5 * view.motion_scale * u.m[k][i];
+        const MeanGradient<shape> middle(straining);
+        const Lanes inverse_volume = inverse(middle.volume);
+        d.gradient = middle.of(u);
+        d.factor = view.motion_scale * inverse_volume;
+        d.strain = symmetric(d.gradient, d.factor);
+        f.volume = share * middle.volume;
+        f.weight = share;
+
+        // Stress, as the tensor S of force[mode] = S . b[mode].
+        Tensor<dim> stress = Response::stress(e, 0, d, f, work);
+        Matrix<dim> S;
         for (int i = 0; i < dim; ++i)
-          straining.m[k][i] -= 0.5 * view.motion_scale * u.m[k][i];
-    const MeanGradient<shape> middle(straining);
-    const Lanes inverse_volume = inverse(middle.volume);
-    d.gradient = middle.of(u);
-    d.factor = view.motion_scale * inverse_volume;
-    d.strain = symmetric(d.gradient, d.factor);
-    f.volume = share * middle.volume;
-    f.weight = share;
-
-    // Stress, as the tensor S of force[mode] = S . b[mode].
-    Tensor<dim> stress = Response::stress(e, 0, d, f, work);
-    Matrix<dim> S;
-    for (int i = 0; i < dim; ++i)
-      for (int c = 0; c < dim; ++c)
-        S.m[i][c] = f.weight * stress[component_of<dim>(i, c)];
-    if constexpr (kinematics == Kinematics::total) { // tau . F^-T
-      Matrix<dim> F = times<dim>(d.factor, d.gradient);
-      for (int i = 0; i < dim; ++i)
-        F.m[i][i] += 1.0;
-      const Jacobian<dim> inverse_F(F);
-      S = times<dim>(inverse(inverse_F.det), product(S, inverse_F.cof));
-    }
-
-    // Hourglass control.
-    Lanes q[hourglass][dim], Q[hourglass][dim];
-    hourglass_part<shape>(u, times<dim>(inverse_volume, d.gradient), straining, q);
-    const Lanes norm = acting.squared_norm();
-    const Lanes stiffness =
-        share * view.constants.hourglass / (3.0 * dim) * norm * inverse(acting.volume);
-    Lanes energy{};
-    if (view.hourglass != nullptr) { // of increments
-      double* const stored = view.hourglass + place(first, hourglass * dim);
-      Matrix<dim> spin;
-      if constexpr (kinematics == Kinematics::rate)
-        spin = turn_of<dim>(d.gradient, d.factor);
-      for (int k = 0; k < hourglass; ++k) {
-        Lanes before[dim];
-        for (int i = 0; i < dim; ++i)
-          before[i] = load(stored + (k * dim + i) * batch_size);
-        for (int i = 0; i < dim; ++i) {
-          Lanes turned = before[i];
-          if constexpr (kinematics == Kinematics::rate) {
-            turned = spin.m[i][0] * before[0];
-            for (int c = 1; c < dim; ++c)
-              turned += spin.m[i][c] * before[c];
-          }
-          const Lanes step = view.motion_scale * q[k][i];
-          Q[k][i] = turned + stiffness * step;
-          energy += 0.5 * (turned + Q[k][i]) * step;
-          store(stored + (k * dim + i) * batch_size, Q[k][i]);
-        }
-      }
-    } else {
-      for (int k = 0; k < hourglass; ++k)
-        for (int i = 0; i < dim; ++i) {
-          Q[k][i] = stiffness * view.motion_scale * q[k][i];
-          if (view.wants_energy)
-            energy += 0.5 * view.motion_scale * Q[k][i] * q[k][i];
-        }
-    }
-    work.hourglass += only(energy, count);
-
-    // Forces.
-    const Lanes inverse_acting = inverse(acting.volume);
-    for (int k = 0; k < hourglass; ++k)
-      for (int i = 0; i < dim; ++i)
-        for (int c = 0; c < dim; ++c)
-          S.m[i][c] -= inverse_acting * Q[k][i] * x.m[first_mode + k][c];
-    FieldModes<shape> force;
-    for (int k = 0; k < ModesOf<shape>::all; ++k)
-      for (int i = 0; i < dim; ++i) {
-        Lanes sum{};
-        if (k < ModesOf<shape>::linear)
           for (int c = 0; c < dim; ++c)
-            sum += S.m[i][c] * acting.b[k < ModesOf<shape>::linear ? k : 0][c];
-        if (k >= first_mode)
-          sum += Q[k >= first_mode ? k - first_mode : 0][i];
-        force.m[k][i] = sum;
-      }
-    force.corner_forces(corner);
-    for (int a = 0; a < nodes; ++a)
-      subtract(view.force, node + a * batch_size, corner[a], count);
-  });
+            S.m[i][c] = f.weight * stress[component_of<dim>(i, c)];
+        if constexpr (kinematics == Kinematics::total) { // tau . F^-T
+          Matrix<dim> F = times<dim>(d.factor, d.gradient);
+          for (int i = 0; i < dim; ++i)
+            F.m[i][i] += 1.0;
+          const Jacobian<dim> inverse_F(F);
+          S = times<dim>(inverse(inverse_F.det), product(S, inverse_F.cof));
+        }
+
+        // Hourglass control.
+        Lanes q[hourglass][dim], Q[hourglass][dim];
+        hourglass_part<shape>(u, times<dim>(inverse_volume, d.gradient), straining, q);
+        const Lanes norm = acting.squared_norm();
+        const Lanes stiffness =
+            share * view.constants.hourglass / (3.0 * dim) * norm * inverse(acting.volume);
+        Lanes energy{};
+        if (view.hourglass != nullptr) { // of increments
+          double* const stored = view.hourglass + place(first, hourglass * dim);
+          Matrix<dim> spin;
+          if constexpr (kinematics == Kinematics::rate)
+            spin = turn_of<dim>(d.gradient, d.factor);
+          for (int k = 0; k < hourglass; ++k) {
+            Lanes before[dim];
+            for (int i = 0; i < dim; ++i)
+              before[i] = load(stored + (k * dim + i) * batch_size);
+            for (int i = 0; i < dim; ++i) {
+              Lanes turned = before[i];
+              if constexpr (kinematics == Kinematics::rate) {
+                turned = spin.m[i][0] * before[0];
+                for (int c = 1; c < dim; ++c)
+                  turned += spin.m[i][c] * before[c];
+              }
+              const Lanes step = view.motion_scale * q[k][i];
+              Q[k][i] = turned + stiffness * step;
+              energy += 0.5 * (turned + Q[k][i]) * step;
+              store(stored + (k * dim + i) * batch_size, Q[k][i]);
+            }
+          }
+        } else {
+          for (int k = 0; k < hourglass; ++k)
+            for (int i = 0; i < dim; ++i) {
+              Q[k][i] = stiffness * view.motion_scale * q[k][i];
+              if (view.wants_energy)
+                energy += 0.5 * view.motion_scale * Q[k][i] * q[k][i];
+            }
+        }
+        work.hourglass += only(energy, count);
+
+        // Forces.
+        const Lanes inverse_acting = inverse(acting.volume);
+        for (int k = 0; k < hourglass; ++k)
+          for (int i = 0; i < dim; ++i)
+            for (int c = 0; c < dim; ++c)
+              S.m[i][c] -= inverse_acting * Q[k][i] * x.m[first_mode + k][c];
+        FieldModes<shape> force;
+        for (int k = 0; k < ModesOf<shape>::all; ++k)
+          for (int i = 0; i < dim; ++i) {
+            Lanes sum{};
+            if (k < ModesOf<shape>::linear)
+              for (int c = 0; c < dim; ++c)
+                sum += S.m[i][c] * acting.b[k < ModesOf<shape>::linear ? k : 0][c];
+            if (k >= first_mode)
+              sum += Q[k >= first_mode ? k - first_mode : 0][i];
+            force.m[k][i] = sum;
+          }
+        force.corner_forces(corner);
+        for (int a = 0; a < nodes; ++a)
+          subtract(view.force, node + a * batch_size, corner[a], count);
+      });
   book(work, patch);
 }
 

@@ -15,8 +15,8 @@ inline constexpr int batch_size = 8;
 /// Numbers in the row of a node: in 3D a fourth fills it.
 template <int dim> inline constexpr int row_size = dim == 2 ? 2 : 4;
 
-/// What deforms. The out-of-plane direction of 2D is plane (strain zz comes from the law, if any) or
-/// the hoop of axisymmetry: x is the radius, and everything counts for the whole ring.
+/// What deforms. The out-of-plane direction of 2D is plane (strain zz comes from the law, if any)
+/// or the hoop of axisymmetry: x is the radius, and everything counts for the whole ring.
 enum class Space : std::uint8_t { plane, axisymmetric };
 
 /// How the strain of an element is taken.

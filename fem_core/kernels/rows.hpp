@@ -7,9 +7,7 @@
 namespace kerf::KERF_ISA {
 
 /// One vector of each element.
-template <int dim> struct Columns {
-  Lanes c[dim];
-};
+template <int dim> struct Columns { Lanes c[dim]; };
 
 /// The rows of one node of `width` elements.
 KERF_INLINE Columns<3> gather3(const double* rows, const std::uint16_t* node) {

@@ -152,8 +152,7 @@ template <Shape shape> struct Derivatives {
       Lanes w[nodes];
       if constexpr (shape == Shape::quad4) {
         const QuadModes m = {d[i][0][0] + d[i][0][1], d[i][1][0] + d[i][1][1],
-                             gauss_point *
-                                 (d[i][0][1] - d[i][0][0] + d[i][1][1] - d[i][1][0])};
+                             gauss_point * (d[i][0][1] - d[i][0][0] + d[i][1][1] - d[i][1][0])};
         m.corners(w);
       } else if constexpr (shape == Shape::hex8) {
         Lanes total[3], x[3], y[3], xy[3];

@@ -15,11 +15,15 @@ namespace kerf::fem {
 namespace {
 
 template <int dim> std::vector<Column> history_columns() {
-  std::vector<Column> columns = {{"step", "1"},           {"time", "s"},
-                                 {"kinetic_energy", "J"}, {"elastic_energy", "J"},
-                                 {"hourglass_energy", "J"}, {"plastic_dissipation", "J"},
+  std::vector<Column> columns = {{"step", "1"},
+                                 {"time", "s"},
+                                 {"kinetic_energy", "J"},
+                                 {"elastic_energy", "J"},
+                                 {"hourglass_energy", "J"},
+                                 {"plastic_dissipation", "J"},
                                  {"damping_dissipation", "J"},
-                                 {"external_work", "J"},  {"interface_work", "J"}};
+                                 {"external_work", "J"},
+                                 {"interface_work", "J"}};
   for (int axis = 0; axis < dim; ++axis)
     columns.push_back({fmt::format("momentum_{}", "xyz"[axis]), "N s"});
   return columns;
@@ -95,19 +99,19 @@ template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time
     const auto part = [&](const std::vector<double>& values, std::size_t columns) {
       return std::span<const double>(values).subspan(first * columns, block.size() * columns);
     };
-    Grid& grid = grids.emplace_back(
-        Grid{.name = mesh.blocks.size() == 1 ? "mesh" : fmt::format("mesh_{}", name_of(block.shape)),
-             .positions = position,
-             .points_of = {},
-             .cells = cells_of(block.shape),
-             .connectivity = block.nodes,
-             .point_fields = {{"id", 1, std::span<const std::int64_t>(ids_)},
-                              {"displacement", dim, std::span<const double>(u)},
-                              {"velocity", dim, std::span<const double>(v)},
-                              {"mass", 1, std::span<const double>(mass)},
-                              {"alpha", 1, std::span<const double>(alpha_)}},
-             .cell_fields = {{"elastic_energy", 1, part(energy, 1)},
-                             {"stress", components, part(stress, components)}}});
+    Grid& grid = grids.emplace_back(Grid{
+        .name = mesh.blocks.size() == 1 ? "mesh" : fmt::format("mesh_{}", name_of(block.shape)),
+        .positions = position,
+        .points_of = {},
+        .cells = cells_of(block.shape),
+        .connectivity = block.nodes,
+        .point_fields = {{"id", 1, std::span<const std::int64_t>(ids_)},
+                         {"displacement", dim, std::span<const double>(u)},
+                         {"velocity", dim, std::span<const double>(v)},
+                         {"mass", 1, std::span<const double>(mass)},
+                         {"alpha", 1, std::span<const double>(alpha_)}},
+        .cell_fields = {{"elastic_energy", 1, part(energy, 1)},
+                        {"stress", components, part(stress, components)}}});
     for (const auto& [name, values] : history)
       grid.cell_fields.push_back({name, 1, part(values, 1)});
     first += block.size();

@@ -39,10 +39,10 @@ IsotropicElastic read_material(const Table& material, int dimension) {
     throw SettingsError("material", "give exactly one pair: young_modulus and poisson_ratio, or "
                                     "C11 and C12");
   if (moduli)
-    return IsotropicElastic::from_moduli(material.number("density"), material.number("C11"), material.number("C12"),
-                       dimension);
+    return IsotropicElastic::from_moduli(material.number("density"), material.number("C11"),
+                                         material.number("C12"), dimension);
   return IsotropicElastic::from_young(material.number("density"), material.number("young_modulus"),
-                    material.number("poisson_ratio"));
+                                      material.number("poisson_ratio"));
 }
 
 /// The library reports an unknown tag too, but does not guess what was meant.
@@ -120,7 +120,9 @@ template <int dim> InitialSetting<dim> read_initial(const Table& table) {
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh) {
   Settings<dim> settings;
   settings.materials.push_back(
-      {.material = {.law = read_material(participant.table("material"), dim)}, .region = {}, .box = {}});
+      {.material = {.law = read_material(participant.table("material"), dim)},
+       .region = {},
+       .box = {}});
   for (const Table& table : participant.list("boundary"))
     settings.boundary.push_back(read_boundary(table, mesh));
   for (const Table& table : participant.list("initial"))

@@ -173,8 +173,8 @@ TYPED_TEST(FemElements, pass_the_patch_test_in_finite_strain) {
     }
 }
 
-// F = R U: stress of a stretch, then turned. A rigid rotation of any size leaves a hyperelastic body
-// without force; rounding of F - 1 in terms of the moduli.
+// F = R U: stress of a stretch, then turned. A rigid rotation of any size leaves a hyperelastic
+// body without force; rounding of F - 1 in terms of the moduli.
 TYPED_TEST(FemElements, feel_no_force_in_a_large_rotation_when_they_are_hyperelastic) {
   constexpr int dim = TypeParam::value;
   Tensor<dim> R = Tensor<dim>::Identity();
@@ -201,7 +201,8 @@ TYPED_TEST(FemElements, feel_no_force_in_rigid_translation_and_small_rotation) {
     SCOPED_TRACE(name_of(kind));
     Engine<dim> engine = body<dim>(kind);
     const bool ring = kind.plane == Plane::axisymmetric; // moves along its axis only
-    const Vec<dim> translation = ring ? Vec<dim>(Vec<dim>::Unit(1) * 1e-3) : Vec<dim>::Constant(1e-3);
+    const Vec<dim> translation =
+        ring ? Vec<dim>(Vec<dim>::Unit(1) * 1e-3) : Vec<dim>::Constant(1e-3);
     const auto translated = linear_field<dim>(engine.mesh(), Tensor<dim>::Zero(), translation);
     EXPECT_EQ(largest(cases::forces(engine, translated)), 0.0);
     if (ring)
@@ -283,8 +284,9 @@ TYPED_TEST(FemElements, have_forces_that_derive_from_their_energy) {
                 of_element.template block<dim, dim>(static_cast<Eigen::Index>(a) * dim,
                                                     static_cast<Eigen::Index>(b) * dim);
       }
-      if (!(blended && kind.formulation == Formulation::one_point)) // shares its mean alpha
+      if (!(blended && kind.formulation == Formulation::one_point)) { // shares its mean alpha
         EXPECT_LE((K - assembled).cwiseAbs().maxCoeff(), 1e-13 * K.cwiseAbs().maxCoeff());
+      }
     }
 }
 

@@ -101,7 +101,8 @@ TEST(FemBoundary, selects_by_box_and_lets_the_later_setting_count) {
 TEST(FemBoundary, refuses_settings_that_cannot_be_meant_and_names_the_key) {
   const auto key = [](const BoundarySetting<2>& setting) -> std::string {
     try {
-      Engine<2>(make_box(bar), {.materials = cases::of<2>(rock), .boundary = {setting}, .initial = {}});
+      Engine<2>(make_box(bar),
+                {.materials = cases::of<2>(rock), .boundary = {setting}, .initial = {}});
     } catch (const InputError& error) {
       return error.key();
     }
@@ -255,8 +256,9 @@ TEST(FemWeights, leave_the_part_with_alpha_and_keep_the_rest_in_its_place) {
 TEST(FemEngine, carries_a_wave_across_the_end_of_a_period_as_through_a_longer_mesh) {
   const InitialPulse pulse{
       .amplitude = 1e-6, .center = 15e-3, .length = 8e-3, .wave_speed = 2190.0, .spacing = 1e-3};
-  const Settings<2> settings{
-      .materials = cases::of<2>(rock), .boundary = {}, .initial = {{.box = {}, .velocity = {}, .pulse = pulse}}};
+  const Settings<2> settings{.materials = cases::of<2>(rock),
+                             .boundary = {},
+                             .initial = {{.box = {}, .velocity = {}, .pulse = pulse}}};
   const BoxMesh<2> once{.size = {20e-3, 3e-3}, .count = {20, 3}};
   const BoxMesh<2> thrice{.origin = {-20e-3, 0.0}, .size = {60e-3, 3e-3}, .count = {60, 3}};
   Engine<2> periodic(make_box(once, {.length = {20e-3, 3e-3}}), settings);

@@ -67,7 +67,9 @@ TEST(FemPulse, travels_with_the_speeds_of_compression_and_shear_waves) {
                              .wave_speed = wave.speed,
                              .spacing = h,
                              .component = wave.component};
-    Engine<2> engine(mesh, {.materials = cases::of<2>(rock), .boundary = {}, .initial = {cases::started<2>(pulse)}});
+    Engine<2> engine(
+        mesh,
+        {.materials = cases::of<2>(rock), .boundary = {}, .initial = {cases::started<2>(pulse)}});
     const int steps = static_cast<int>(std::ceil(way / wave.speed / step_below_limit(engine, 0.8)));
     engine.start(way / wave.speed / steps);
     for (int n = 0; n < steps; ++n)
@@ -160,7 +162,9 @@ TYPED_TEST(FemBound, of_the_assembled_body_parts_stable_from_unstable_steps) {
     const Mesh<dim> mesh = cases::distorted_box<dim>();
     const InitialPulse pulse{
         .amplitude = 1e-9, .center = 1e-3, .length = 1.7e-3, .wave_speed = 2000.0};
-    Engine<dim> engine(mesh, {.materials = cases::of<dim>(rock), .boundary = {}, .initial = {cases::started<dim>(pulse)}});
+    Engine<dim> engine(mesh, {.materials = cases::of<dim>(rock),
+                              .boundary = {},
+                              .initial = {cases::started<dim>(pulse)}});
     if (blended)
       engine.set_weights(cases::ramp(mesh, 0.0, 3e-3));
     const double critical = 2.0 / std::sqrt(cases::largest_omega2(engine));
