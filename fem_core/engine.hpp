@@ -2,12 +2,15 @@
 #pragma once
 
 #include "common/state.hpp"
+#include "fem_core/absorbing.hpp"
 #include "fem_core/boundary.hpp"
 #include "fem_core/element_bounds.hpp"
 #include "fem_core/energy.hpp"
 #include "fem_core/integrate.hpp"
 #include "fem_core/internal_force.hpp"
+#include "fem_core/loads.hpp"
 #include "fem_core/mesh.hpp"
+#include "fem_core/rigid_walls.hpp"
 #include "fem_core/settings.hpp"
 
 #include <cstdint>
@@ -94,6 +97,10 @@ public:
   std::size_t material_of(std::uint32_t element) const { return material_of_[element]; }
   /// One that takes part, at the displacements of this moment.
   ElementState<dim> element_state(std::uint32_t element) const;
+  /// Force of the support on the body at the last t_n, of one of the boundary settings, N.
+  Vec<dim> reaction(std::size_t setting) const { return reactions_[setting]; }
+  /// Force of a rigid wall on the body in the last step, N.
+  Vec<dim> wall_force(std::size_t wall) const { return wall_forces_[wall]; }
   /// The first node whose motion is no longer a finite number.
   std::optional<std::uint32_t> first_non_finite() const;
 
@@ -106,18 +113,38 @@ private:
     std::uint32_t node;
   };
 
+  struct Pushed { // by a load, a dashpot or a wall during a step
+    std::uint32_t row;
+    Vec<dim> before;             // v^(n-1/2), m/s
+    Vec<dim> driving, resisting; // forces whose work is booked as external, and as damped, N
+  };
+
   ElementModel<dim> model_of(std::uint32_t element) const;
   void assign_materials();
   void make_groups();
+  Space space() const {
+    return settings_.plane == Plane::axisymmetric ? Space::axisymmetric : Space::plane;
+  }
   StepSettings<dim> step_settings() const;
+  void add_loads();
   void compute_forces(bool finish);
   void advance_plain();
   void advance_special(const Rows<dim>& prescribed);
+  std::vector<Pushed> pushed_rows() const;
+  void push_by_dashpots(std::span<Pushed> pushed);
+  void push_by_walls(std::span<Pushed> pushed);
+  void push(std::uint32_t row, const Vec<dim>& before, const Vec<dim>& after,
+            const Vec<dim>& force);
+  double span_of_step() const;
+  bool is_held(std::uint32_t row, int component) const;
   std::vector<double> by_node(const Rows<dim>& rows) const;
 
   Mesh<dim> mesh_;
   Settings<dim> settings_;
   Boundary<dim> boundary_;
+  Loads<dim> loads_;
+  Absorbing<dim> absorbing_;
+  RigidWalls<dim> walls_;
   std::vector<std::uint32_t> material_of_; // [num_elements] setting
 
   // With the weights.
@@ -140,11 +167,13 @@ private:
   Rows<dim> parts_; // of special rows, what each patch adds
   bool forces_are_current_ = false;
   std::vector<std::uint32_t> interface_rows_;
-  Rows<dim> interface_force_;            // [rows]; empty until there is one
-  ElementWork element_work_{};           // of all steps
-  std::vector<RowSums<dim>> patch_sums_; // of the plain rows of the last step
-  RowSums<dim> sums_;                    // of all rows of the last step
-  WorkBook damped_work_, reaction_work_, gravity_work_, interface_work_;
+  Rows<dim> interface_force_;                     // [rows]; empty until there is one
+  ElementWork element_work_{};                    // of all steps
+  std::vector<RowSums<dim>> patch_sums_;          // of the plain rows of the last step
+  RowSums<dim> sums_;                             // of all rows of the last step
+  std::vector<double> load_force_;                // [loads_.nodes()][dim] of this step, N
+  std::vector<Vec<dim>> reactions_, wall_forces_; // of the last step, N
+  WorkBook damped_work_, external_work_, interface_work_;
 };
 
 } // namespace kerf::fem

@@ -2,6 +2,7 @@
 add_executable(fem_tests
   ${CMAKE_CURRENT_LIST_DIR}/fem_elements.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_engine.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/fem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_participant.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/fem_waves.cpp)
