@@ -18,6 +18,7 @@ Engine<dim>::Engine(Mesh<dim> mesh, Settings<dim> settings)
   std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
   add_initial<dim>(mesh_, settings_.initial, u, v); // throws now, not when the run starts
   assign_materials();
+  removed_.assign(mesh_.num_elements(), false);
   absorbing_ = Absorbing<dim>(mesh_, settings_.absorbing, space(), [this](std::uint32_t e) {
     const Material& material = settings_.materials[material_of_[e]].material;
     return Medium{.moduli = material.bound(), .density = material.density()};
@@ -72,15 +73,23 @@ template <int dim> void Engine<dim>::set_weights(std::span<const double> alpha) 
       throw std::invalid_argument(
           fmt::format("the weight of node {} is {}; it must be from 0 to 1", a, alpha[a]));
   alpha_.assign(alpha.begin(), alpha.end());
+  find_active();
+  make_groups();
+  make_masses();
+}
+
+template <int dim> void Engine<dim>::find_active() {
   active_.clear();
   for (std::uint32_t e = 0; e < mesh_.num_elements(); ++e) {
     const auto nodes = mesh_.nodes_of_element(e);
-    if (alpha_.empty() ||
-        std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t a) { return alpha_[a] > 0.0; }))
+    if (!removed_[e] &&
+        (alpha_.empty() ||
+         std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t a) { return alpha_[a] > 0.0; })))
       active_.push_back(e);
   }
-  make_groups();
+}
 
+template <int dim> void Engine<dim>::make_masses() {
   mass_.assign(patches_.num_rows(), 0.0);
   for (const std::uint32_t e : active_) {
     const ElementModel<dim> model = model_of(e);
@@ -147,7 +156,8 @@ template <int dim> void Engine<dim>::make_groups() {
       group_of_[elements[k]] = static_cast<std::uint32_t>(g);
     }
     const Material& of_group = settings_.materials[material[g]].material;
-    groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths));
+    groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths,
+                                 settings_.in_situ_stress.has_value()));
     if (alpha_.empty())
       continue;
     GroupKernel& group = groups_.back();
@@ -246,7 +256,7 @@ template <int dim> void Engine<dim>::start(double time_step) {
   if (!(time_step > 0.0))
     throw std::invalid_argument(fmt::format("the time step {} s must be positive", time_step));
   time_step_ = time_step;
-  step_ = 0;
+  step_ = changed_at_ = 0;
   std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
   add_initial<dim>(mesh_, settings_.initial, u, v);
   const std::size_t rows = patches_.num_rows();
@@ -268,6 +278,10 @@ template <int dim> void Engine<dim>::start(double time_step) {
   reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
   wall_forces_.assign(walls_.size(), Vec<dim>::Zero());
   damped_work_ = external_work_ = interface_work_ = {};
+  origin_ = Rows<dim>(rows);
+  if (settings_.in_situ_stress)
+    set_in_situ_stress();
+  support_absorbing();
 }
 
 template <int dim>
@@ -291,8 +305,9 @@ void Engine<dim>::motion(std::span<const std::uint32_t> nodes, std::span<double>
       position[k * dim + i] =
           mesh_.positions[std::size_t{nodes[k]} * dim + i] + displacement_[row][i];
       const bool moved = boundary_.is_prescribed(nodes[k], i) && mass_[row] > 0.0;
-      velocity[k * dim + i] =
-          moved ? boundary_.velocity(nodes[k], i, step_, time_step_) : velocity_[row][i];
+      velocity[k * dim + i] = moved
+                                  ? boundary_.velocity(nodes[k], i, step_ - changed_at_, time_step_)
+                                  : velocity_[row][i];
     }
   }
 }
@@ -308,6 +323,13 @@ template <int dim> std::vector<double> Engine<dim>::by_node(const Rows<dim>& row
 
 template <int dim> std::vector<double> Engine<dim>::displacement() const {
   return by_node(displacement_);
+}
+
+template <int dim> std::vector<double> Engine<dim>::displacement_since_reset() const {
+  Rows<dim> since = displacement_;
+  for (std::size_t row = 0; row < since.size(); ++row)
+    since[row] -= origin_[row];
+  return by_node(since);
 }
 
 template <int dim> std::vector<double> Engine<dim>::velocity() const {

@@ -4,6 +4,7 @@
 #include "common/state.hpp"
 #include "fem_core/absorbing.hpp"
 #include "fem_core/boundary.hpp"
+#include "fem_core/change.hpp"
 #include "fem_core/element_bounds.hpp"
 #include "fem_core/energy.hpp"
 #include "fem_core/integrate.hpp"
@@ -61,6 +62,10 @@ public:
   /// @param displacement, velocity  [num_nodes][dim] u^n, m, and v^(n-1/2), m/s
   void set_motion(std::span<const double> displacement, std::span<const double> velocity);
 
+  /// Changes what a change names, between two steps.
+  /// @throws InputError for an unknown region or what the parts refuse; nothing has changed then
+  void change(const Change<dim>& change);
+
   std::uint64_t step() const { return static_cast<std::uint64_t>(step_); } // n, between two steps
   /// All that steps have changed, between two steps.
   State state() const;
@@ -90,7 +95,9 @@ public:
   const Settings<dim>& settings() const { return settings_; }
   std::vector<double> mass() const;         // [num_nodes] kg
   std::vector<double> displacement() const; // [num_nodes][dim] u^n, m
-  std::vector<double> velocity() const;     // [num_nodes][dim] v^(n-1/2), m/s
+  /// [num_nodes][dim] since the last change that reset it, m
+  std::vector<double> displacement_since_reset() const;
+  std::vector<double> velocity() const; // [num_nodes][dim] v^(n-1/2), m/s
   /// Elements that take part, ascending.
   const std::vector<std::uint32_t>& active_elements() const { return active_; }
   /// The setting that an element has its material from.
@@ -121,11 +128,17 @@ private:
 
   ElementModel<dim> model_of(std::uint32_t element) const;
   void assign_materials();
+  void find_active();
   void make_groups();
+  void make_masses();
+  void set_in_situ_stress();
+  void support_absorbing();
   Space space() const {
     return settings_.plane == Plane::axisymmetric ? Space::axisymmetric : Space::plane;
   }
   StepSettings<dim> step_settings() const;
+  Row<dim> sum_of_parts(std::size_t special) const;
+  void average_dilatation(std::uint32_t group, const PatchMotion<dim>& motion);
   void add_loads();
   void compute_forces(bool finish);
   void advance_plain();
@@ -149,6 +162,7 @@ private:
 
   // With the weights.
   std::vector<double> alpha_; // [num_nodes]; empty: one
+  std::vector<bool> removed_; // [num_elements]
   std::vector<std::uint32_t> active_;
   Patches patches_;
   std::vector<GroupKernel> groups_;
@@ -160,11 +174,13 @@ private:
 
   // At t_n.
   double time_step_ = 0.0;
-  std::int64_t step_ = 0;
+  std::int64_t step_ = 0, changed_at_ = 0; // where tables of boundaries and loads begin
   Rows<dim> displacement_, velocity_;
-  std::vector<double> initial_displacement_; // [moved]
-  Rows<dim> force_; // own, of special rows; of all, after compute_own_forces()
-  Rows<dim> parts_; // of special rows, what each patch adds
+  std::vector<double> initial_displacement_; // [moved], when their tables begin
+  Rows<dim> origin_;                         // of displacement_since_reset()
+  std::vector<Vec<dim>> support_; // [absorbing nodes] that keeps the in-situ stress there, N
+  Rows<dim> force_;               // own, of special rows; of all, after compute_own_forces()
+  Rows<dim> parts_;               // of special rows, what each patch adds
   bool forces_are_current_ = false;
   std::vector<std::uint32_t> interface_rows_;
   Rows<dim> interface_force_;                     // [rows]; empty until there is one

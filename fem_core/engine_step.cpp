@@ -28,6 +28,9 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
   // There has been no increment before the first step.
   const PatchMotion<dim> motion{reference_, displacement_, velocity_,
                                 step_ == 0 ? 0.0 : time_step_};
+  for (std::uint32_t g = 0; g < groups_.size(); ++g)
+    if (groups_[g].compute_dilatation != nullptr)
+      average_dilatation(g, motion);
   const StepSettings<dim> step = step_settings();
   const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
   std::vector<ElementWork> work(patches_.patches.size());
@@ -39,7 +42,8 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
     for (std::int64_t p = 0; p < num_patches; ++p) {
       const auto k = static_cast<std::size_t>(p);
       const Patch& patch = patches_.patches[k];
-      work[k] = compute_patch<dim>(patches_, patch, groups_[patch.group], motion, false, scratch);
+      work[k] =
+          compute_patch<dim>(patches_, patch, groups_[patch.group], motion, Wanted::force, scratch);
       std::copy_n(scratch.force.at(patch.num_own), patch.num_shared * row_size<dim>,
                   parts_.at(patch.first_shared));
       if (finish)
@@ -60,13 +64,46 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
   const auto num_special = static_cast<std::int64_t>(patches_.num_special);
 #pragma omp parallel for schedule(static) if (num_special > 1000)
   for (std::int64_t k = 0; k < num_special; ++k) {
-    Row<dim> sum;
-    for (std::uint32_t part = patches_.first_part[k]; part < patches_.first_part[k + 1]; ++part)
-      for (int i = 0; i < row_size<dim>; ++i)
-        sum.x[i] += parts_.at(patches_.parts[part])[i];
+    const Row<dim> sum = sum_of_parts(static_cast<std::size_t>(k));
     std::copy_n(sum.x, row_size<dim>, force_.at(patches_.num_plain + static_cast<std::size_t>(k)));
   }
   add_loads();
+}
+
+/// What the patches add up at a special row, in their order.
+template <int dim> Row<dim> Engine<dim>::sum_of_parts(std::size_t special) const {
+  Row<dim> sum;
+  for (std::uint32_t k = patches_.first_part[special]; k < patches_.first_part[special + 1]; ++k)
+    for (int i = 0; i < row_size<dim>; ++i)
+      sum.x[i] += parts_.at(patches_.parts[k])[i];
+  return sum;
+}
+
+/// Gives the nodes of a group the mean dilatation of its elements around them.
+template <int dim>
+void Engine<dim>::average_dilatation(std::uint32_t group, const PatchMotion<dim>& motion) {
+  parts_.set_zero();
+  std::vector<double>& mean = groups_[group].dilatation;
+  mean.assign(patches_.num_rows(), 0.0);
+  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
+#pragma omp parallel if (num_patches > 1)
+  {
+    PatchScratch<dim> scratch(patches_);
+#pragma omp for schedule(static)
+    for (std::int64_t p = 0; p < num_patches; ++p) {
+      const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
+      if (patch.group != group)
+        continue;
+      compute_patch<dim>(patches_, patch, groups_[group], motion, Wanted::dilatation, scratch);
+      std::copy_n(scratch.force.at(patch.num_own), patch.num_shared * row_size<dim>,
+                  parts_.at(patch.first_shared));
+      for (std::uint32_t k = 0; k < patch.num_own; ++k)
+        mean[patch.first_row + k] = scratch.force.at(k)[0] / scratch.force.at(k)[1];
+    }
+  }
+  for (std::size_t k = 0; k < patches_.num_special; ++k)
+    if (const Row<dim> sum = sum_of_parts(k); sum.x[1] > 0.0)
+      mean[patches_.num_plain + k] = sum.x[0] / sum.x[1];
 }
 
 template <int dim> void Engine<dim>::add_loads() {
@@ -74,7 +111,7 @@ template <int dim> void Engine<dim>::add_loads() {
   std::vector<double> u(nodes.size() * dim);
   for (std::size_t k = 0; k < nodes.size(); ++k)
     Eigen::Map<Vec<dim>>(u.data() + k * dim) = displacement_[patches_.row_of_node[nodes[k]]];
-  loads_.compute(static_cast<double>(step_) * time_step_, u, load_force_);
+  loads_.compute(static_cast<double>(step_ - changed_at_) * time_step_, u, load_force_);
   for (std::size_t k = 0; k < nodes.size(); ++k)
     force_[patches_.row_of_node[nodes[k]]] += Eigen::Map<const Vec<dim>>(&load_force_[k * dim]);
 }
@@ -122,7 +159,7 @@ template <int dim> void Engine<dim>::integrate() {
   for (const Moved& moved : moved_) {
     moved_before.push_back(velocity_[moved.row][moved.component]);
     prescribed[moved.row - patches_.num_plain][moved.component] =
-        boundary_.velocity(moved.node, moved.component, step_, time_step_);
+        boundary_.velocity(moved.node, moved.component, step_ - changed_at_, time_step_);
   }
 
   std::vector<Pushed> pushed = pushed_rows();
@@ -152,7 +189,7 @@ template <int dim> void Engine<dim>::integrate() {
                  .after = 0.5 * time_step_ * reaction * after};
     displacement_[moved.row][moved.component] =
         initial_displacement_[k] +
-        boundary_.displacement(moved.node, moved.component, step_ + 1, time_step_);
+        boundary_.displacement(moved.node, moved.component, step_ - changed_at_ + 1, time_step_);
   }
   for (const auto& [row, before, driving, resisting] : pushed) {
     const Vec<dim> half_way = 0.5 * time_step_ * before,
@@ -225,7 +262,7 @@ template <int dim> Energies Engine<dim>::energies() const {
       const GroupKernel& group = groups_[patch.group];
       if (!group.increments) // which computing the energy does not change
         of_patches[static_cast<std::size_t>(p)] = compute_patch<dim>(
-            patches_, patch, const_cast<GroupKernel&>(group), motion, true, scratch);
+            patches_, patch, const_cast<GroupKernel&>(group), motion, Wanted::energy, scratch);
     }
   }
   for (const ElementWork& of_patch : of_patches) {
@@ -303,7 +340,7 @@ template <int dim> void Engine<dim>::push_by_dashpots(std::span<Pushed> pushed) 
       continue;
     const Matrix& damper = absorbing_.nodes()[k].damper;
     const Vec<dim> old = velocity_[row];
-    driving = Eigen::Map<const Vec<dim>>(&incoming[k * dim]);
+    driving = support_[k] + Eigen::Map<const Vec<dim>>(&incoming[k * dim]);
     const double D = mass_[row] / span_of_step();
     Matrix A = D * Matrix::Identity() + 0.5 * damper;
     Vec<dim> b = D * old - 0.5 * damper * before + driving;

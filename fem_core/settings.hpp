@@ -106,6 +106,16 @@ template <int dim> struct MaterialSetting {
   std::optional<Box<dim>> box{};
 };
 
+/// Stress that a body begins with, in equilibrium with what holds it and with its weight: the same
+/// everywhere, or growing with the depth.
+template <int dim> struct InSituStress {
+  Symmetric<double, dim> stress{}; // Pa, tension positive; without K0
+  /// Horizontal over vertical stress, which is -(overburden + rho g depth) along gravity.
+  std::optional<double> K0{};
+  double surface = 0.0;    // height against gravity where the depth is zero, m
+  double overburden = 0.0; // Pa, on the surface
+};
+
 template <int dim> struct Settings {
   std::vector<MaterialSetting<dim>> materials;
   Plane plane = Plane::strain; // of 2D
@@ -114,6 +124,7 @@ template <int dim> struct Settings {
   std::vector<LoadSetting<dim>> loads{};
   std::vector<AbsorbingSetting<dim>> absorbing{};
   std::vector<WallSetting<dim>> walls{};
+  std::optional<InSituStress<dim>> in_situ_stress{};
   Vec<dim> gravity = Vec<dim>::Zero(); // m/s²
   double mass_damping = 0.0;           // a of the force -a m v, 1/s
   double local_damping = 0.0;          // share of the resultant that opposes the motion, 0 to 1

@@ -1,5 +1,6 @@
 # Tests of the finite element engine and of its participant.
 add_executable(fem_tests
+  ${CMAKE_CURRENT_LIST_DIR}/fem_change.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_elements.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_engine.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_loads.cpp
