@@ -97,7 +97,7 @@ template <int dim> void Engine<dim>::make_masses() {
     try {
       of_element = lumped_mass(model.element, model.density);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("element {}: {}", e, error.what()));
+      throw std::invalid_argument(fmt::format("{}: {}", name_of(e), error.what()));
     }
     const auto nodes = mesh_.nodes_of_element(e);
     for (std::size_t a = 0; a < nodes.size(); ++a)
@@ -197,9 +197,7 @@ template <int dim> void Engine<dim>::make_groups() {
 template <int dim> ElementModel<dim> Engine<dim>::model_of(std::uint32_t element) const {
   const Material& material = settings_.materials[material_of_[element]].material;
   ElementModel<dim> model{.element = {.shape = mesh_.shape_of(element),
-                                      .space = settings_.plane == Plane::axisymmetric
-                                                   ? Space::axisymmetric
-                                                   : Space::plane,
+                                      .space = space(),
                                       .corners = mesh_.corners(element),
                                       .alpha = {}},
                           .formulation = material.formulation,
@@ -215,13 +213,74 @@ template <int dim> ElementModel<dim> Engine<dim>::model_of(std::uint32_t element
   return model;
 }
 
+/// At u^n, if the element feels how it has deformed. Its mass stays.
+template <int dim> ElementModel<dim> Engine<dim>::deformed_model_of(std::uint32_t element) const {
+  ElementModel<dim> model = model_of(element);
+  const Material& material = settings_.materials[material_of_[element]].material;
+  const auto* const rubber = std::get_if<NeoHookean>(&material.law);
+  if ((!material.finite_strain && rubber == nullptr) || displacement_.size() == 0)
+    return model;
+  const auto volume = [](const Element<dim>& of) {
+    double sum = 0.0;
+    for (const auto& point : points_of(of))
+      sum += point.volume;
+    return sum;
+  };
+  const double before = volume(model.element);
+  const auto nodes = mesh_.nodes_of_element(element);
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    model.element.corners.col(static_cast<Eigen::Index>(a)) +=
+        displacement_[patches_.row_of_node[nodes[a]]];
+  const double J = volume(model.element) / before;
+  model.density /= J;
+  if (rubber != nullptr) {
+    model.moduli = rubber->bound(std::min(1.0, J));
+    model.moduli.lambda /= J;
+    model.moduli.mu /= J;
+  }
+  return model;
+}
+
 template <int dim> StepLimit Engine<dim>::step_limit() const {
   if (active_.empty())
     return {.omega2 = 0.0, .limited_by = "no element"};
-  const LargestOmega2 largest =
-      largest_omega2<dim>(active_.size(), [this](std::size_t k) { return model_of(active_[k]); });
-  return {.omega2 = largest.value,
-          .limited_by = fmt::format("element {}", active_[largest.element])};
+  if (const auto inverted = first_inverted())
+    throw std::runtime_error(fmt::format("{} has turned inside out", name_of(*inverted)));
+  const LargestOmega2 largest = largest_omega2<dim>(active_.size(), [this](std::size_t k) {
+    ElementModel<dim> model = deformed_model_of(active_[k]);
+    const Material& material = settings_.materials[material_of_[active_[k]]].material;
+    const double factor = material.step_factor();
+    model.moduli.lambda /= factor * factor; // which scales the frequencies
+    model.moduli.mu /= factor * factor;
+    model.hourglass /= factor * factor;
+    return model;
+  });
+  return {.omega2 = largest.value, .limited_by = name_of(active_[largest.element])};
+}
+
+template <int dim> std::optional<std::uint32_t> Engine<dim>::first_inverted() const {
+  std::vector<std::uint8_t> inverted(active_.size());
+  const auto size = static_cast<std::int64_t>(active_.size());
+#pragma omp parallel for schedule(static) if (size > 1000)
+  for (std::int64_t k = 0; k < size; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    try {
+      deformed_model_of(active_[at]);
+    } catch (const std::invalid_argument&) {
+      inverted[at] = 1;
+    }
+  }
+  const auto first = std::find(inverted.begin(), inverted.end(), 1);
+  if (first == inverted.end())
+    return std::nullopt;
+  return active_[static_cast<std::size_t>(first - inverted.begin())];
+}
+
+template <int dim> std::string Engine<dim>::name_of(std::uint32_t element) const {
+  for (const auto& [tag, elements] : mesh_.regions)
+    if (std::binary_search(elements.begin(), elements.end(), element))
+      return fmt::format("element {} (tag {})", element, tag);
+  return fmt::format("element {}", element);
 }
 
 template <int dim>

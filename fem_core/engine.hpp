@@ -47,8 +47,13 @@ public:
   /// @param alpha  [num_nodes] from 0 to 1; empty: one everywhere
   void set_weights(std::span<const double> alpha);
 
-  /// The bound of the whole body.
+  /// The bound of the whole body as it has deformed, with what bulk viscosity takes.
+  /// @throws std::runtime_error when an element has turned inside out
   StepLimit step_limit() const;
+  /// The first element whose Jacobian is not positive; of those in finite strain.
+  std::optional<std::uint32_t> first_inverted() const;
+  /// "element 3 (tag rock)"
+  std::string name_of(std::uint32_t element) const;
   /// Blended inverse masses, 1/kg; 0 where the motion is prescribed and at inert nodes.
   void inverse_mass(std::span<const std::uint32_t> nodes, std::span<double> out) const;
   /// Largest bound of the elements around each node, rad²/s²; 0 without elements.
@@ -127,6 +132,7 @@ private:
   };
 
   ElementModel<dim> model_of(std::uint32_t element) const;
+  ElementModel<dim> deformed_model_of(std::uint32_t element) const;
   void assign_materials();
   void find_active();
   void make_groups();

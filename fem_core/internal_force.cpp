@@ -40,7 +40,7 @@ template <int dim> PatchScratch<dim>::PatchScratch(const Patches& patches) {
   std::size_t most = 0;
   for (const Patch& patch : patches.patches)
     most = std::max<std::size_t>(most, patch.num_rows());
-  for (Rows<dim>* rows : {&reference, &motion, &velocity, &force})
+  for (Rows<dim>* rows : {&reference, &motion, &force})
     rows->resize(most);
   dilatation.resize(most);
 }
@@ -51,7 +51,6 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
                           PatchScratch<dim>& scratch) {
   constexpr std::size_t size = sizeof(Row<dim>);
   const bool rate = group.kinematics == Kinematics::rate;
-  const bool viscous = !group.length.empty();
   const double* reference = motion.reference.at(patch.first_copy);
   if (rate) {
     const double* const X = reference;
@@ -69,11 +68,6 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
   copy_rows(
       patches, patch, [&](std::uint32_t row, double* to) { std::memcpy(to, moved.at(row), size); },
       scratch.motion);
-  if (viscous)
-    copy_rows(
-        patches, patch,
-        [&](std::uint32_t row, double* to) { std::memcpy(to, motion.velocity.at(row), size); },
-        scratch.velocity);
   if (!group.dilatation.empty() && wanted != Wanted::dilatation) {
     std::copy_n(group.dilatation.data() + patch.first_row, patch.num_own,
                 scratch.dilatation.data());
@@ -93,7 +87,6 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
       .reference = reference,
       .motion = scratch.motion.data(),
       .motion_scale = rate || group.increments ? motion.time_step : 1.0,
-      .velocity = viscous ? scratch.velocity.data() : nullptr,
       .force = scratch.force.data(),
       .alpha = part(group.alpha, per_batch(group.alpha), patch),
       .length = part(group.length, per_batch(group.length), patch),

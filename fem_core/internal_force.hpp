@@ -49,7 +49,7 @@ public:
   /// Sizes for the largest patch.
   explicit PatchScratch(const Patches& patches);
 
-  Rows<dim> reference, motion, velocity, force;
+  Rows<dim> reference, motion, force;
   std::vector<double> dilatation;
 };
 

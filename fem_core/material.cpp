@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <type_traits>
 
@@ -64,6 +65,10 @@ Moduli Material::bound() const {
   return std::visit([](const auto& any) { return any.bound(); }, law);
 }
 
+double Material::step_factor() const {
+  return std::sqrt(1.0 + linear_viscosity * linear_viscosity) - linear_viscosity;
+}
+
 void check(const Material& material, Shape shape, Plane plane) {
   const bool simplex = shape == Shape::tri3 || shape == Shape::tet4;
   const Formulation formulation = material.formulation;
@@ -85,6 +90,15 @@ void check(const Material& material, Shape shape, Plane plane) {
     throw InputError("formulation", fmt::format("{} has no meaning in plane stress, where nothing "
                                                 "locks; take full or one_point",
                                                 name));
+  if (!(material.linear_viscosity >= 0.0))
+    throw InputError("linear_viscosity",
+                     fmt::format("{} must not be negative", material.linear_viscosity));
+  if (!(material.quadratic_viscosity >= 0.0))
+    throw InputError("quadratic_viscosity",
+                     fmt::format("{} must not be negative", material.quadratic_viscosity));
+  if (std::holds_alternative<NeoHookean>(material.law) &&
+      material.linear_viscosity + material.quadratic_viscosity > 0.0)
+    throw InputError("linear_viscosity", "neo_hookean has no bulk viscosity");
   if (std::holds_alternative<NeoHookean>(material.law) &&
       (formulation == Formulation::mean_dilatation || formulation == Formulation::nodal_pressure))
     throw InputError("formulation", fmt::format("neo_hookean has full or one_point, not {}", name));
@@ -110,7 +124,8 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
           plane == Plane::stress ? Response::hyperelastic_plane_stress : Response::hyperelastic;
     } else {
       constexpr bool linear = LinearLaw<LawType>;
-      group.increments = material.finite_strain || !linear || stored ||
+      const bool viscous = material.linear_viscosity + material.quadratic_viscosity > 0.0;
+      group.increments = material.finite_strain || !linear || stored || viscous ||
                          material.formulation == Formulation::nodal_pressure;
       if constexpr (std::is_base_of_v<IsotropicElastic, LawType>)
         if (!group.increments) {
@@ -147,6 +162,13 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
     group.compute_dilatation = find_kernel(key);
   }
   group.points = static_cast<int>(points);
+  if (material.linear_viscosity + material.quadratic_viscosity > 0.0) {
+    group.length.assign(lengths.begin(), lengths.end());
+    const double b_2 = material.quadratic_viscosity;
+    group.constants.linear_viscosity =
+        material.linear_viscosity * std::sqrt(material.density() * material.bound().uniaxial());
+    group.constants.quadratic_viscosity = b_2 * b_2 * material.density();
+  }
   if (material.formulation == Formulation::one_point) {
     group.constants.hourglass = material.hourglass_stiffness * material.bound().uniaxial();
     if (group.increments)

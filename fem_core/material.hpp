@@ -29,12 +29,14 @@ struct Material {
   bool finite_strain = false;
   Formulation formulation = Formulation::full;
   double hourglass_stiffness = 0.1; // of one_point, as a share of about that of full integration
-  double linear_viscosity = 0.0;    // of the bulk
-  double quadratic_viscosity = 0.0;
+  double linear_viscosity = 0.0;    // of the bulk: b_1, about 0.06
+  double quadratic_viscosity = 0.0; // b_2, about 1.2
 
   double density() const;
   /// Of an isotropic solid that is at least as stiff, Pa.
   Moduli bound() const;
+  /// What linear bulk viscosity takes from the critical step: sqrt(1 + b_1²) - b_1.
+  double step_factor() const;
 };
 
 /// @throws InputError for what cannot be used together, with a key inside the material

@@ -43,8 +43,9 @@ struct PointLaw {
 
 /// Constants of all elements of a material.
 struct ElementConstants {
-  double hourglass; // stiffness against hourglass modes, as stiffness_of() has it, Pa
-  double linear_viscosity, quadratic_viscosity; // of the bulk
+  double hourglass;           // stiffness against hourglass modes, as stiffness_of() has it, Pa
+  double linear_viscosity;    // of the bulk, b_1 rho c_P, Pa s/m
+  double quadratic_viscosity; // b_2² rho, kg/m³
 };
 
 /// Work of a step, added up over a patch, J.
@@ -62,7 +63,6 @@ struct PatchView {
   const double* reference;    // [rows] X; with Kinematics::rate x at the end of the increment, m
   const double* motion;       // [rows] u, m; for increments and rates v, m/s
   double motion_scale;        // times the motion is the displacement (increment): 1 or time_step
-  const double* velocity;     // [rows] v, m/s; null unless something is viscous
   double* force;              // [rows] internal forces are taken off, N
   const double* alpha;        // [batches][points][batch_size] share; null: one everywhere
   const double* length;       // [batches][batch_size] of the elements, for bulk viscosity, m

@@ -75,6 +75,26 @@ template <class Law> struct HyperelasticResponse {
   }
 };
 
+/// Pressure against the rate of the volume: linear, and in compression quadratic too, which smears
+/// shocks over some elements; J. von Neumann and R. D. Richtmyer, doi:10.1063/1.1699639, and
+/// R. Landshoff (1955). It is not stored.
+template <class Elements, int dim>
+KERF_INLINE void add_bulk_viscosity(const Elements& e, const Deformation<dim>& d,
+                                    const PointForce<dim>& f, Tensor<dim>& stress,
+                                    WorkLanes& work) {
+  const PatchView& view = e.view;
+  if (view.time_step == 0.0)
+    return;
+  const Lanes rate = (1.0 / view.time_step) * d.own_trace; // 1/s
+  const Lanes length = load(view.length + place(e.first, 1));
+  const Lanes squeezed = select(rate < 0.0, length * rate, Lanes{}); // m/s
+  const Lanes tension = view.constants.linear_viscosity * length * rate -
+                        view.constants.quadratic_viscosity * squeezed * squeezed;
+  for (int k = 0; k < 3; ++k)
+    stress[k] += tension;
+  work.viscous += only(f.volume * tension * d.own_trace, e.count);
+}
+
 /// A law of increments, or of total strain without an inlined variant.
 template <Kinematics kinematics> struct CalledResponse {
   template <class Elements, int dim>
@@ -116,6 +136,8 @@ template <Kinematics kinematics> struct CalledResponse {
         contract(mean, d.strain) + (1.0 / 3.0) * trace(mean) * (d.own_trace - trace(d.strain));
     work.internal += only(f.volume * power, e.count);
     work.dissipated += only(f.volume * point.dissipated, e.count);
+    if (view.length != nullptr)
+      add_bulk_viscosity(e, d, f, point.stress, work);
     return point.stress;
   }
 };
