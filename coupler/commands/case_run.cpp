@@ -38,6 +38,14 @@ void say(const std::string& sentence) {
   fmt::print(stderr, "{}\n", sentence);
 }
 
+/// What participants doubt of a case that can be run.
+void say_warnings(const nlohmann::json& record) {
+  for (const auto& [name, participant] : record.at("participants").items())
+    if (const auto& summary = participant.at("summary"); summary.is_object())
+      for (const auto& warning : summary.value("warnings", nlohmann::json::array()))
+        say(fmt::format("warning: participants.{}: {}", name, warning.get<std::string>()));
+}
+
 } // namespace
 
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
@@ -59,6 +67,7 @@ nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::p
   try {
     nlohmann::json record = broker.run();
     supervisor.stop(std::chrono::seconds(5));
+    say_warnings(record);
     return record;
   } catch (...) {
     supervisor.stop(std::chrono::milliseconds(300)); // they were told; who hangs is killed
