@@ -10,10 +10,13 @@ std::vector<Key> common_keys(const std::string& key) {
   return {
       {key + ".model", "fem", text, "", R"("linear_elastic")",
        one_of({"linear_elastic", "transversely_isotropic", "neo_hookean", "j2_plastic",
-               "drucker_prager", "isotropic_damage"}),
+               "drucker_prager", "isotropic_damage", "from_packing"}),
        R"("linear_elastic")", "the constitutive law; the user guide has the keys of each"},
       {key + ".density", "fem", number, "kg/m³", none, in(above_zero), "2358.0",
        "the bulk density; next to particles theirs with the pores", live},
+      {key + ".participant", "fem", text, "", none, anything, R"("rock")",
+       "the participant whose bonded particles have the stiffness and the bulk density; of "
+       "from_packing"},
       {key + ".finite_strain", "fem", flag, "", none, anything, "true",
        "true for strain of the current configuration with an objective stress rate; small strain "
        "when not given; neo_hookean is always of finite strain"},

@@ -56,7 +56,8 @@ const std::vector<Model>& models() {
        joined(elastic, {"finite_strain", "dilation_angle", "fit", "tension_cutoff"})},
       {"isotropic_damage",
        {"density", "tensile_strength", "fracture_energy"},
-       joined(elastic, {"finite_strain", "strength_ratio"})}};
+       joined(elastic, {"finite_strain", "strength_ratio"})},
+      {"from_packing", {"participant"}, {"finite_strain"}}};
   return all;
 }
 
@@ -126,6 +127,8 @@ private:
         refuse(key, name, own);
     if (has(own.optional, "C11"))
       check_elastic(key, material);
+    if (own.name == "from_packing" && !material["participant"].is_null())
+      check_packing(key + ".participant", material["participant"]);
     if (own.name == "j2_plastic")
       check_hardening(key, material);
     if (own.name == "drucker_prager" && material["dilation_angle"].is_number() &&
@@ -184,6 +187,39 @@ private:
                       in_plane ? "give C12 between -C11 and C11."
                                : "give C12 between -C11 / 2 and C11.");
     }
+  }
+
+  /// The moduli of a packing are those of equal springs between bonded neighbours.
+  void check_packing(const string& key, const string& name) {
+    Words known;
+    for (const auto& [other, table] : settings_["participants"].items())
+      if (table["kind"] == "dem")
+        known.push_back(other);
+    if (!has(known, name)) {
+      const string meant = nearest(name, known);
+      problems_.add(key, fmt::format("{} = \"{}\" has no particles.", key, name),
+                    known.empty()   ? "this case has no participant of kind dem."
+                    : meant.empty() ? fmt::format("name one of {}.", fmt::join(known, ", "))
+                                    : "did you mean " + meant + "?");
+      return;
+    }
+    const json& rock = settings_["participants"][name];
+    const json &lattice = rock["particles"]["lattice"], &material = rock["material"];
+    string reason;
+    if (rock["bonds"]["kind"] == "none")
+      reason = "its particles are not bonded";
+    else if (material["law"] != "linear" || material["normal_stiffness"].is_null())
+      reason = "its material has no normal_stiffness of law = \"linear\"";
+    else if (!rock["materials"].empty() || !rock["pairs"].empty())
+      reason = "it has several materials";
+    else if (!lattice.is_null() && lattice["type"] != "triangular" && lattice["type"] != "fcc")
+      reason = "its lattice is neither triangular nor fcc";
+    else if (lattice.is_null() && material["bond_radius_ratio"] > 0.0)
+      reason = "its bonds bend";
+    if (!reason.empty())
+      problems_.add(key,
+                    fmt::format("{} = \"{}\": the moduli are not known, {}.", key, name, reason),
+                    "give model = \"linear_elastic\" with density, C11 and C12.");
   }
 
   void check_hardening(const string& key, const json& material) {

@@ -4,6 +4,7 @@
 #include "coupler/broker/process_supervisor.hpp"
 #include "coupler/commands/packings.hpp"
 #include "coupler/commands/restart.hpp"
+#include "coupler/commands/solids.hpp"
 
 #include <fmt/format.h>
 
@@ -51,7 +52,8 @@ void say_warnings(const nlohmann::json& record) {
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
                              bool plan_only, decltype(coupler::RunSetup::progress) progress,
                              std::optional<coupler::Restart> restart) {
-  const nlohmann::json settings = with_packings(case_file, run_folder);
+  const nlohmann::json settings =
+      with_solids(case_file, with_packings(case_file, run_folder), run_folder);
   coupler::ProcessSupervisor supervisor(
       settings.at("participants"), std::filesystem::read_symlink("/proc/self/exe").parent_path(),
       run_folder / "logs");

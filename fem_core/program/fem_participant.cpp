@@ -139,7 +139,8 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
   const nlohmann::json warnings = warnings_of(engine, case_settings);
   const coupler::Assignment& assignment = participant.assignment();
   if (assignment.plan_only) {
-    participant.finalize(nlohmann::json({{"warnings", warnings}}).dump());
+    participant.finalize(
+        nlohmann::json({{"elements", mesh.num_elements()}, {"warnings", warnings}}).dump());
     return;
   }
   engine.start(schedule.time_step);

@@ -5,6 +5,7 @@
 
 #include <fmt/ranges.h>
 
+#include <functional>
 #include <numbers>
 
 namespace kerf::fem {
@@ -81,30 +82,16 @@ IsotropicDamage read_damage(const Table& table) {
   return IsotropicDamage::from(read_elastic(table, 3), p);
 }
 
-/// @param dimension  2 where no strain leaves the plane
 Law read_law(const Table& table, int dimension, Plane plane) {
-  enum class Model { elastic, layered, neo_hookean, j2, drucker_prager, damage };
-  switch (table.one_of<Model>("model", Model::elastic,
-                              {{"linear_elastic", Model::elastic},
-                               {"transversely_isotropic", Model::layered},
-                               {"neo_hookean", Model::neo_hookean},
-                               {"j2_plastic", Model::j2},
-                               {"drucker_prager", Model::drucker_prager},
-                               {"isotropic_damage", Model::damage}})) {
-  case Model::elastic:
-    return read_elastic(table, plane == Plane::strain ? dimension : 3);
-  case Model::layered:
-    return read_layered(table, dimension);
-  case Model::neo_hookean:
-    return NeoHookean::from(read_elastic(table, 3));
-  case Model::j2:
-    return read_j2_plastic(table);
-  case Model::drucker_prager:
-    return read_drucker_prager(table);
-  case Model::damage:
-    break;
-  }
-  return read_damage(table);
+  const auto elastic = [&] { return read_elastic(table, plane == Plane::strain ? dimension : 3); };
+  return table.one_of<std::function<Law()>>(
+      "model", elastic,
+      {{"linear_elastic", elastic},
+       {"transversely_isotropic", [&] { return read_layered(table, dimension); }},
+       {"neo_hookean", [&] { return NeoHookean::from(read_elastic(table, 3)); }},
+       {"j2_plastic", [&] { return read_j2_plastic(table); }},
+       {"drucker_prager", [&] { return read_drucker_prager(table); }},
+       {"isotropic_damage", [&] { return read_damage(table); }}})();
 }
 
 Material read_material(const Table& table, int dimension, Plane plane) {

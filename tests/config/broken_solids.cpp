@@ -72,7 +72,7 @@ TEST(BrokenSolid, a_key_of_another_model_is_told_with_the_models_that_use_it_and
             "participants.far.material.finite_strain is given, but model = \"neo_hookean\" does "
             "not use it.\n"
             "  Fix: leave it out; it is for linear_elastic, j2_plastic, drucker_prager, "
-            "isotropic_damage.");
+            "isotropic_damage, from_packing.");
   const std::string misspelt = told(with_material("cohesoin = 5e6\n" + moduli));
   EXPECT_EQ(misspelt.find("participants.far.material.cohesoin is not a key of an FEM material.\n"
                           "  Fix: did you mean cohesion? Allowed: "),
@@ -135,6 +135,29 @@ TEST(BrokenSolid, axisymmetry_goes_with_neither_discs_nor_a_period_of_the_radius
   EXPECT_EQ(told(text, {"case.periodic.x=[0.005, 0.025]"}),
             "participants.far.plane = \"axisymmetric\", but case.periodic.x is given.\n"
             "  Fix: leave one of them out: x is the radius.");
+}
+
+TEST(BrokenSolid, a_packing_whose_moduli_are_not_known_is_told) {
+  const std::string from = "model = \"from_packing\"\nparticipant = \"rock\"\n";
+  EXPECT_EQ(
+      told(with_material(from)),
+      "participants.far.material.participant = \"rock\": the moduli are not known, its lattice "
+      "is neither triangular nor fcc.\n"
+      "  Fix: give model = \"linear_elastic\" with density, C11 and C12.");
+  EXPECT_EQ(told(with_material(from), {"participants.rock.particles.lattice.type=triangular"}), "");
+  EXPECT_NE(told(with_material(from), {"participants.rock.particles.lattice.type=triangular",
+                                       "participants.rock.bonds.kind=none"})
+                .find("its particles are not bonded"),
+            std::string::npos);
+  EXPECT_EQ(told(with_material("model = \"from_packing\"\nparticipant = \"rocks\"\n")),
+            "participants.far.material.participant = \"rocks\" has no particles.\n"
+            "  Fix: did you mean rock?");
+  EXPECT_EQ(told(with_material(from + "density = 2600.0\n"),
+                 {"participants.rock.particles.lattice.type=triangular"}),
+            "participants.far.material.density is given, but model = \"from_packing\" does not use "
+            "it.\n"
+            "  Fix: leave it out; it is for linear_elastic, transversely_isotropic, neo_hookean, "
+            "j2_plastic, drucker_prager, isotropic_damage.");
 }
 
 TEST(BrokenSolid, what_2d_means_is_written_with_the_case) {
