@@ -15,10 +15,10 @@ namespace kerf {
 
 /// What joins the points of a grid.
 enum class Cells {
-  points,   // nothing: one cell for every point, no connectivity
-  segments, // 2 points
-  quads,    // 4 points, VTK's order
-  hexes,    // 8 points, VTK's order
+  points,    // nothing: one cell for every point, no connectivity
+  segments,  // 2 points
+  quads,     // 4 points, VTK's order
+  hexes,     // 8 points, VTK's order
   triangles, // 3 points
   tetrahedra // 4 points, VTK's order
 };

@@ -59,7 +59,7 @@ std::string topology(const std::string& file, const Layout& layout) {
 } // namespace
 
 std::size_t points_per_cell(Cells cells) {
-  constexpr std::size_t count[] = {1, 2, 4, 8, 3};
+  constexpr std::size_t count[] = {1, 2, 4, 8, 3, 4};
   return count[static_cast<std::size_t>(cells)];
 }
 

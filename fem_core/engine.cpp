@@ -156,8 +156,14 @@ template <int dim> void Engine<dim>::make_groups() {
       group_of_[elements[k]] = static_cast<std::uint32_t>(g);
     }
     const Material& of_group = settings_.materials[material[g]].material;
-    groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths,
-                                 settings_.in_situ_stress.has_value()));
+    try {
+      groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths,
+                                   settings_.in_situ_stress.has_value()));
+    } catch (const InputError& error) { // of a law, with the key "material.fracture_energy"
+      throw InputError(
+          fmt::format("materials[{}]{}", material[g], error.key().substr(error.key().find('.'))),
+          error.what());
+    }
     if (alpha_.empty())
       continue;
     GroupKernel& group = groups_.back();

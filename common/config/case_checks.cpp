@@ -60,7 +60,7 @@ private:
         check_mass_scaling(key, participant);
     } else {
       check_mesh(key + ".mesh", participant["mesh"], settings_["case"], problems_);
-      check_elastic(key + ".material", participant["material"]);
+      check_solids(key, settings_, problems_);
     }
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
@@ -341,31 +341,6 @@ private:
       problems_.add(
           key + "." + second, fmt::format("{} has both {} and {}.", key, first, second),
           fmt::format("give {} for one value, or {} for a table of times.", first, second));
-  }
-
-  void check_elastic(const string& key, const json& material) {
-    const auto given = [&](const char* name) { return !material[name].is_null(); };
-    const bool has_moduli = given("young_modulus") && given("poisson_ratio");
-    const bool has_stiffness = given("C11") && given("C12");
-    const int count = given("young_modulus") + given("poisson_ratio") + given("C11") + given("C12");
-    if (count != 2 || (!has_moduli && !has_stiffness)) {
-      string found;
-      for (const char* name : {"young_modulus", "poisson_ratio", "C11", "C12"})
-        if (given(name))
-          found += (found.empty() ? "" : ", ") + string(name);
-      problems_.add(key,
-                    fmt::format("{} has {} for its elastic constants.", key,
-                                found.empty() ? "nothing" : found),
-                    "give exactly one pair: young_modulus with poisson_ratio, or C11 with C12.");
-    } else if (has_stiffness) {
-      const double C11 = material["C11"], C12 = material["C12"];
-      if (C12 >= C11 || (is_plane_ ? C12 : 2.0 * C12) <= -C11) // shear and bulk stiffness
-        problems_.add(key + ".C12",
-                      fmt::format("{}.C12 = {} with C11 = {} is not a stable material.", key,
-                                  value_text(C12), value_text(C11)),
-                      is_plane_ ? "give C12 between -C11 and C11."
-                                : "give C12 between -C11 / 2 and C11.");
-    }
   }
 
   void check_boundary(const string& key, const json& boundary) {

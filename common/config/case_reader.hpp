@@ -25,6 +25,11 @@ void check_settings(nlohmann::json& settings, const Document& document, Problems
 void check_materials(const std::string& participant, const nlohmann::json& table,
                      Problems& problems);
 
+/// The part of check_settings() about what the elements of one participant are made of. Also fills
+/// in what 2D means where that is not given.
+/// @param participant  "participants.far"
+void check_solids(const std::string& participant, nlohmann::json& settings, Problems& problems);
+
 /// The part of check_settings() about the mesh of one participant.
 /// @param key            "participants.far.mesh"
 /// @param case_settings  the table [case]

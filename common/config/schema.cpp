@@ -16,7 +16,7 @@ std::vector<Key> case_keys() {
       {"case.name", "", name, "", required, anything, R"("reference")",
        "a name for files and reports"},
       {"case.dimension", "", integer, "", required, one_of({"2", "3"}), "2",
-       "the dimension of space; 2 is plane strain, per metre of thickness"},
+       "the dimension of space; 2 is per metre of thickness"},
       {"case.seed", "", integer, "", "1", in(from_zero), "1", "the seed of everything random"},
       {"case.end_time", "", number, "s", none, in(above_zero), "4e-5",
        "the time at which the run ends; with stages it may be left out", live},

@@ -29,6 +29,7 @@ enum class Type {
   vector,          // [number…], one per dimension of the case
   counts,          // [integer…], one per dimension of the case
   box,             // [vector, vector], the lower and the upper corner
+  curve,           // [[number, number]…], the first of them ascend
   numbers_of_time, // [[time, number]…], the times ascend
   vectors_of_time  // [[time, number per dimension…]…], the times ascend
 };

@@ -144,27 +144,6 @@ std::vector<Key> mass_scaling_keys() {
   };
 }
 
-std::vector<Key> solid_keys() {
-  using enum Type;
-  const Range poisson{.least = -1.0, .most = 0.5, .without_least = true, .without_most = true};
-  return {
-      {"participants.*.material", "fem", table, "", tables, anything, "material",
-       "the solid: exactly one pair of young_modulus with poisson_ratio, or C11 with C12"},
-      {"participants.*.material.model", "fem", text, "", R"("linear_elastic")",
-       one_of({"linear_elastic"}), R"("linear_elastic")", "the constitutive law"},
-      {"participants.*.material.density", "fem", number, "kg/m³", required, in(above_zero),
-       "2358.0", "the bulk density; next to particles theirs with the pores"},
-      {"participants.*.material.young_modulus", "fem", number, "Pa", none, in(above_zero),
-       "1.247e10", "Young's modulus; in 2D of plane strain", live},
-      {"participants.*.material.poisson_ratio", "fem", number, "", none, in(poisson), "0.2",
-       "Poisson's ratio; in 2D of plane strain", live},
-      {"participants.*.material.C11", "fem", number, "Pa", none, in(above_zero), "1.3856e10",
-       "the stiffness lambda + 2 mu of uniaxial strain"},
-      {"participants.*.material.C12", "fem", number, "Pa", none, anything, "3.4641e9",
-       "the stiffness lambda across uniaxial strain"},
-  };
-}
-
 std::vector<Key> motion_keys(const std::string& kind) {
   using enum Type;
   const bool dem = kind == "dem";

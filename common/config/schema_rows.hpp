@@ -34,6 +34,8 @@ std::vector<Key> particle_keys();
 std::vector<Key> mesh_keys();
 /// Those of its elements.
 std::vector<Key> element_keys();
+/// Those of what they are made of.
+std::vector<Key> solid_keys();
 /// Those of its materials; of particles only.
 std::vector<Key> material_keys();
 /// Those of its rigid tools; of particles only.

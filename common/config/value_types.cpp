@@ -18,8 +18,8 @@ bool is_array_of(const json& value, std::size_t size, const std::function<bool(c
          std::all_of(value.begin(), value.end(), is);
 }
 
-/// @param columns  beside the time; 0: any number of them, in every row the same
-bool is_table_of_times(const json& value, std::size_t columns) {
+/// @param columns  beside the first, which ascends; 0: any number of them, in every row the same
+bool is_ascending_table(const json& value, std::size_t columns) {
   const auto is_number = [](const json& v) { return v.is_number(); };
   if (!is_array_of(value, 0, [](const json& row) { return row.is_array() && row.size() > 1; }))
     return false;
@@ -92,6 +92,8 @@ string wanted(Type type, std::size_t dimension) {
     return fmt::format("an array of {}integers, one for each dimension", how_many);
   case Type::box:
     return fmt::format("two corners of {}numbers each, the lower one first", how_many);
+  case Type::curve:
+    return "rows of two numbers, the first ascending";
   case Type::numbers_of_time:
     return "rows of a time and a number, the times ascending";
   case Type::vectors_of_time:
@@ -145,10 +147,11 @@ bool has_type(const json& value, Type type, std::size_t dimension) {
       if (value[0][axis] > value[1][axis])
         return false;
     return true;
+  case Type::curve:
   case Type::numbers_of_time:
-    return is_table_of_times(value, 1);
+    return is_ascending_table(value, 1);
   case Type::vectors_of_time:
-    return is_table_of_times(value, dimension);
+    return is_ascending_table(value, dimension);
   }
   return false;
 }

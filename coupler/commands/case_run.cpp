@@ -4,6 +4,7 @@
 #include "coupler/broker/process_supervisor.hpp"
 #include "coupler/commands/packings.hpp"
 #include "coupler/commands/restart.hpp"
+#include "coupler/commands/solids.hpp"
 
 #include <fmt/format.h>
 
@@ -38,12 +39,21 @@ void say(const std::string& sentence) {
   fmt::print(stderr, "{}\n", sentence);
 }
 
+/// What participants doubt of a case that can be run.
+void say_warnings(const nlohmann::json& record) {
+  for (const auto& [name, participant] : record.at("participants").items())
+    if (const auto& summary = participant.at("summary"); summary.is_object())
+      for (const auto& warning : summary.value("warnings", nlohmann::json::array()))
+        say(fmt::format("warning: participants.{}: {}", name, warning.get<std::string>()));
+}
+
 } // namespace
 
 nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::path& run_folder,
                              bool plan_only, decltype(coupler::RunSetup::progress) progress,
                              std::optional<coupler::Restart> restart) {
-  const nlohmann::json settings = with_packings(case_file, run_folder);
+  const nlohmann::json settings =
+      with_solids(case_file, with_packings(case_file, run_folder), run_folder);
   coupler::ProcessSupervisor supervisor(
       settings.at("participants"), std::filesystem::read_symlink("/proc/self/exe").parent_path(),
       run_folder / "logs");
@@ -59,6 +69,7 @@ nlohmann::json run_processes(const CaseFile& case_file, const std::filesystem::p
   try {
     nlohmann::json record = broker.run();
     supervisor.stop(std::chrono::seconds(5));
+    say_warnings(record);
     return record;
   } catch (...) {
     supervisor.stop(std::chrono::milliseconds(300)); // they were told; who hangs is killed

@@ -35,9 +35,12 @@ private:
 void print_plan(const nlohmann::json& record, const nlohmann::json& settings) {
   for (const auto& [name, p] : record.at("participants").items()) {
     const bool particles = p.at("kind") == "dem";
+    // The broker knows the elements of meshes of one shape only; participants count theirs.
+    const nlohmann::json::json_pointer counted("/summary/elements");
+    const long elements = p.value("elements", p.value(counted, 0L));
     fmt::print("  {:<12} {}: {} {}{}, about {:.1f} MB\n", name, p.at("program").get<std::string>(),
                p.at("points").get<long>(), particles ? "particles" : "nodes",
-               particles ? "" : fmt::format(", {} elements", p.at("elements").get<long>()),
+               particles ? "" : fmt::format(", {} elements", elements),
                p.at("memory_estimate").get<double>() / 1e6);
   }
   for (const auto& [name, c] : record.at("couplings").items())

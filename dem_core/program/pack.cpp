@@ -32,6 +32,7 @@ struct Options {
   std::optional<PackingFormat> format;
   std::vector<std::string> convert; // from and out
   bool has_moduli = false;
+  std::string moduli_file;
   double normal_stiffness = 0.0, tangential_stiffness = 0.0; // N/m
   std::optional<double> gap_tolerance, coordination_number;  // exactly one of them
   std::optional<int> threads;
@@ -71,6 +72,8 @@ void add_options(CLI::App& app, Options& options) {
       ->group(measure);
   app.add_flag("--moduli", options.has_moduli, "Measures the elastic moduli of the bonded packing")
       ->group(measure);
+  app.add_option("--moduli-file", options.moduli_file, "The same, also as JSON in this file")
+      ->group(measure);
   app.add_option("--normal-stiffness", options.normal_stiffness, "Of a bond, N/m")
       ->check(CLI::PositiveNumber)
       ->group(measure);
@@ -98,6 +101,7 @@ void check(Options& options) {
     throw ArgumentError("give either --region with --radii and --porosity, or --from FILE");
   if (!options.region.empty() && (options.radii.empty() || options.porosity == 0.0))
     throw ArgumentError("--region needs --radii and --porosity");
+  options.has_moduli = options.has_moduli || !options.moduli_file.empty();
   if (options.has_moduli &&
       (options.normal_stiffness == 0.0 ||
        options.gap_tolerance.has_value() == options.coordination_number.has_value()))
@@ -183,6 +187,14 @@ template <int dim> void print_moduli(const ParticleSet<dim>& particles, const Op
   fmt::print("  C66                   {:.6g} Pa\n", m.C66);
   fmt::print("  isotropy              {:.4f} = 2 C66 / (C11 - C12)\n", m.isotropy);
   fmt::print("  bulk density          {:.4f} of the particles' density\n", m.bulk_density_factor);
+  if (options.moduli_file.empty())
+    return;
+  std::ofstream file(options.moduli_file);
+  file << fmt::format(R"({{"C11": {}, "C12": {}, "C66": {}, "bulk_density_factor": {}}})", m.C11,
+                      m.C12, m.C66, m.bulk_density_factor)
+       << '\n';
+  if (!file.flush())
+    throw std::runtime_error("cannot write " + options.moduli_file);
 }
 
 template <int dim> void run(const Options& options) {

@@ -4,13 +4,19 @@
 #include "coupler/participant/run_engine.hpp"
 #include "fem_core/engine.hpp"
 #include "fem_core/input_error.hpp"
+#include "fem_core/mesh/quality.hpp"
 #include "fem_core/program/output.hpp"
+#include "fem_core/program/read_materials.hpp"
 #include "fem_core/program/read_mesh.hpp"
 #include "fem_core/program/read_settings.hpp"
 
 #include <omp.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace kerf::fem {
@@ -21,6 +27,22 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
+
+/// Without a coupling nobody asks for the own forces before the step is made, and integrate() has
+/// them in its one pass over the memory.
+template <int dim> class UncoupledEngine {
+public:
+  explicit UncoupledEngine(Engine<dim>& engine) : engine_(engine) {}
+
+  void motion(std::span<const std::uint32_t>, std::span<double>, std::span<double>) const {}
+  void compute_own_forces() {}
+  void own_forces(std::span<const std::uint32_t>, std::span<double>) const {}
+  void add_interface_forces(std::span<const std::uint32_t>, std::span<const double>) {}
+  void integrate() { engine_.integrate(); }
+
+private:
+  Engine<dim>& engine_;
+};
 
 template <int dim> coupler::Declaration declare(const Mesh<dim>& mesh) {
   constexpr double per_element = 100.0; // indices, and what some laws store
@@ -85,6 +107,24 @@ template <int dim> void check(const Engine<dim>& engine, const Checkpoint& check
   }
 }
 
+/// What may be wrong with a case that can be run, for the log and the user.
+template <int dim>
+nlohmann::json warnings_of(const Engine<dim>& engine, const Table& case_settings) {
+  double wave_speed = 0.0; // m/s
+  for (const MaterialSetting<dim>& setting : engine.settings().materials) {
+    const Material& material = setting.material;
+    wave_speed = std::max(wave_speed, std::sqrt(material.bound().uniaxial() / material.density()));
+  }
+  const double duration =
+      case_settings.number("end_time", std::numeric_limits<double>::infinity()); // s
+  nlohmann::json warnings = nlohmann::json::array();
+  if (const auto doubt = doubt_of_unit(quality_of(engine.mesh()), wave_speed * duration)) {
+    spdlog::warn("{}", *doubt);
+    warnings.push_back(*doubt);
+  }
+  return warnings;
+}
+
 template <int dim>
 void run(coupler::Participant& participant, const Table& settings, const Table& case_settings) {
   const auto begin = Clock::now();
@@ -96,9 +136,11 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
   const coupler::Plan& plan = participant.declare(declare(mesh));
   engine.set_weights(plan.weights);
   const coupler::Schedule& schedule = participant.initialize(limits(engine, plan));
+  const nlohmann::json warnings = warnings_of(engine, case_settings);
   const coupler::Assignment& assignment = participant.assignment();
   if (assignment.plan_only) {
-    participant.finalize();
+    participant.finalize(
+        nlohmann::json({{"elements", mesh.num_elements()}, {"warnings", warnings}}).dump());
     return;
   }
   engine.start(schedule.time_step);
@@ -106,7 +148,12 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
     engine.restore(checkpoint->state);
   Output<dim> output(engine, plan.weights, assignment.run_folder, assignment.name);
   const double setup = seconds_since(begin);
-  coupler::run_engine(engine, participant, plan, schedule, output);
+  if (plan.interfaces.empty()) {
+    UncoupledEngine<dim> uncoupled(engine);
+    coupler::run_engine(uncoupled, participant, plan, schedule, output);
+  } else {
+    coupler::run_engine(engine, participant, plan, schedule, output);
+  }
   const double total = seconds_since(begin);
   const nlohmann::json summary = {{"seconds",
                                    {{"setup", setup},
@@ -114,21 +161,22 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
                                     {"output", output.seconds()}}},
                                   {"threads", omp_get_max_threads()},
                                   {"nodes", mesh.num_nodes()},
-                                  {"elements", engine.active_elements().size()}};
+                                  {"elements", engine.active_elements().size()},
+                                  {"warnings", warnings}};
   participant.finalize(summary.dump());
 }
 
 } // namespace
 
 int run_fem(coupler::Participant& participant) {
+  const auto settings_json = nlohmann::json::parse(participant.assignment().settings);
+  const auto case_json = nlohmann::json::parse(participant.assignment().case_settings);
+  const Table settings(settings_json, "");
+  const Table case_settings(case_json, "");
+  if (const auto threads = read_threads(settings))
+    omp_set_num_threads(*threads);
+  const std::uint64_t dimension = case_settings.count("dimension");
   try {
-    const auto settings_json = nlohmann::json::parse(participant.assignment().settings);
-    const auto case_json = nlohmann::json::parse(participant.assignment().case_settings);
-    const Table settings(settings_json, "");
-    const Table case_settings(case_json, "");
-    if (const auto threads = read_threads(settings))
-      omp_set_num_threads(*threads);
-    const std::uint64_t dimension = case_settings.count("dimension");
     if (dimension == 2)
       run<2>(participant, settings, case_settings);
     else if (dimension == 3)
@@ -138,7 +186,7 @@ int run_fem(coupler::Participant& participant) {
                                                    "and 3",
                                                    dimension));
   } catch (const InputError& error) {
-    throw coupler::SettingsError(error.key(), error.what());
+    throw coupler::SettingsError(case_key(settings, error.key()), error.what());
   }
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include "common/checkpoint.hpp"
 #include "common/stopwatch.hpp"
+#include "fem_core/program/nodal_stress.hpp"
 
 #include <fmt/format.h>
 
@@ -92,6 +93,8 @@ template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time
           state.history[k];
   }
 
+  const std::vector<NodalStress> nodal_stress = stress_at_nodes<dim>(engine_, stress);
+
   // A grid for the elements of each shape; all have all the points.
   std::vector<Grid> grids;
   std::size_t first = 0;
@@ -112,6 +115,8 @@ template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time
                          {"alpha", 1, std::span<const double>(alpha_)}},
         .cell_fields = {{"elastic_energy", 1, part(energy, 1)},
                         {"stress", components, part(stress, components)}}});
+    for (const auto& [name, values] : nodal_stress)
+      grid.point_fields.push_back({name, components, std::span<const double>(values)});
     for (const auto& [name, values] : history)
       grid.cell_fields.push_back({name, 1, part(values, 1)});
     first += block.size();

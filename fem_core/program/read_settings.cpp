@@ -1,7 +1,7 @@
 #include "fem_core/program/read_settings.hpp"
 
 #include "common/nearest.hpp"
-#include "fem_core/input_error.hpp"
+#include "fem_core/program/read_materials.hpp"
 
 #include <fmt/ranges.h>
 
@@ -28,21 +28,6 @@ template <int dim> std::optional<Box<dim>> read_box(const Table& table) {
     return std::nullopt;
   const auto [lower, upper] = table.corners<dim>("box");
   return Box<dim>{lower, upper};
-}
-
-IsotropicElastic read_material(const Table& material, int dimension) {
-  if (const std::string model = material.text("model"); model != "linear_elastic")
-    throw SettingsError(material.path("model"),
-                        fmt::format("\"{}\" must be linear_elastic", model));
-  const bool moduli = material.has("C11") || material.has("C12");
-  if (moduli == (material.has("young_modulus") || material.has("poisson_ratio")))
-    throw SettingsError("material", "give exactly one pair: young_modulus and poisson_ratio, or "
-                                    "C11 and C12");
-  if (moduli)
-    return IsotropicElastic::from_moduli(material.number("density"), material.number("C11"),
-                                         material.number("C12"), dimension);
-  return IsotropicElastic::from_young(material.number("density"), material.number("young_modulus"),
-                                      material.number("poisson_ratio"));
 }
 
 /// The library reports an unknown tag too, but does not guess what was meant.
@@ -119,14 +104,19 @@ template <int dim> InitialSetting<dim> read_initial(const Table& table) {
 
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh) {
   Settings<dim> settings;
-  settings.materials.push_back(
-      {.material = {.law = read_material(participant.table("material"), dim)},
-       .region = {},
-       .box = {}});
+  settings.materials = read_materials(participant, mesh);
+  settings.plane = read_plane(participant);
   for (const Table& table : participant.list("boundary"))
     settings.boundary.push_back(read_boundary(table, mesh));
   for (const Table& table : participant.list("initial"))
     settings.initial.push_back(read_initial<dim>(table));
+  if (participant.has("gravity"))
+    settings.gravity = participant.vector<dim>("gravity");
+  if (participant.has("damping")) {
+    const Table damping = participant.table("damping");
+    settings.mass_damping = damping.number("mass", 0.0);
+    settings.local_damping = damping.number("local", 0.0);
+  }
   return settings;
 }
 

@@ -9,7 +9,7 @@
 
 namespace kerf::fem {
 
-/// Everything besides the mesh, whose tags the boundaries must know.
+/// Everything besides the mesh, which must have the tags of boundaries and materials.
 /// @throws coupler::SettingsError
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh);
 

@@ -21,7 +21,7 @@ bool Table::is_text(const std::string& key, const std::string& text) const {
 }
 
 std::string Table::path(const std::string& key) const {
-  return path_.empty() ? key : path_ + "." + key;
+  return path_.empty() || key.empty() ? path_ + key : path_ + "." + key;
 }
 
 template <class Value> Value Table::get(const std::string& key, const char* what) const {
@@ -86,6 +86,18 @@ std::vector<double> Table::numbers(const std::string& key, std::size_t size) con
     throw SettingsError(path(key),
                         fmt::format("it has {} numbers; it must have {}", values.size(), size));
   return values;
+}
+
+std::pair<std::vector<double>, std::vector<double>> Table::columns(const std::string& key) const {
+  std::pair<std::vector<double>, std::vector<double>> result;
+  for (const auto& row : get<std::vector<std::vector<double>>>(key, "rows of two numbers")) {
+    if (row.size() != 2)
+      throw SettingsError(path(key),
+                          fmt::format("a row has {} numbers; it must have 2", row.size()));
+    result.first.push_back(row[0]);
+    result.second.push_back(row[1]);
+  }
+  return result;
 }
 
 std::vector<std::uint64_t> Table::counts(const std::string& key, std::size_t size) const {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kerf::fem {
@@ -25,7 +26,7 @@ public:
 
   bool has(const std::string& key) const;
   bool is_text(const std::string& key, const std::string& text) const;
-  std::string path(const std::string& key) const;
+  std::string path(const std::string& key = "") const; // of the table itself, without a key
   Table table(const std::string& key) const;
   std::vector<Table> list(const std::string& key) const; // empty when it is not given
 
@@ -34,9 +35,26 @@ public:
   bool flag(const std::string& key, bool otherwise) const;
   std::uint64_t count(const std::string& key) const;
   std::string text(const std::string& key) const;
+  /// What a text stands for; `otherwise` when it is not given.
+  template <class Value>
+  Value one_of(const std::string& key, Value otherwise,
+               const std::vector<std::pair<std::string, Value>>& choices) const {
+    if (!has(key))
+      return otherwise;
+    std::string names;
+    for (const auto& [name, value] : choices) {
+      if (is_text(key, name))
+        return value;
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    throw coupler::SettingsError(path(key),
+                                 fmt::format("\"{}\" must be one of {}", text(key), names));
+  }
   std::vector<std::string> texts(const std::string& key) const;
   std::vector<std::uint64_t> counts(const std::string& key, std::size_t size) const;
   std::vector<double> numbers(const std::string& key, std::size_t size) const;
+  /// Rows of two numbers, as two columns.
+  std::pair<std::vector<double>, std::vector<double>> columns(const std::string& key) const;
 
   template <int dim> Vec<dim> vector(const std::string& key) const {
     return to_vector<dim>(numbers(key, dim));

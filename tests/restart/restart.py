@@ -333,7 +333,7 @@ class Refused(RestartTest):
         content = bytearray(file.read_bytes())
         import h5py
         with h5py.File(file) as f:
-            at = f["state/velocity"].id.get_offset() + 8 * 77
+            at = f["state/velocity.row"].id.get_offset() + 8 * 77
         content[at] ^= 1
         file.write_bytes(content)
         self.assertRegex(self.refusal(f"{self.whole}@{self.steps[1]}"), "truncated, changed")

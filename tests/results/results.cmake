@@ -1,5 +1,11 @@
 # Whole runs whose files are read as a user would.
 kerf_python_test(results.rock results/rock.py Rock results)
 kerf_python_test(results.lost_particles results/rock.py LostParticles results)
+kerf_python_test(results.solids results/solids.py Solids results)
+kerf_python_test(results.elements results/elements.py Results results)
+kerf_python_test(results.from_packing results/elements.py FromPacking results)
+if(TARGET gmsh::gmsh)
+  kerf_python_test(results.mixed_mesh results/elements.py MixedMesh results)
+endif()
 kerf_python_test(results.million results/large.py Million results long)
 set_tests_properties(results.million PROPERTIES TIMEOUT 1800 RUN_SERIAL ON)

@@ -1,7 +1,9 @@
 // The settings of a finite element participant: from JSON to mesh and engine, and what is refused.
 #include "fem_core/program/read_settings.hpp"
 
+#include "fem_core/engine.hpp"
 #include "fem_core/input_error.hpp"
+#include "fem_core/program/read_materials.hpp"
 #include "fem_core/program/read_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -33,14 +35,18 @@ json participant() {
                  "spacing": 0.0, "component": "x", "axis": "x"}]})");
 }
 
-/// Reads all of a participant; gives "key: sentence" of what is refused.
+/// Reads all of a participant and builds its engine; gives "key: sentence" of what is refused.
 std::string refusal(const std::function<void(json&)>& change, const Period<2>& period = {}) {
   json table = participant();
   change(table);
   try {
     const Table settings(table, "");
     const Mesh<2> mesh = read_mesh(settings, period);
-    read_settings(settings, mesh);
+    try {
+      Engine<2>(mesh, read_settings(settings, mesh));
+    } catch (const InputError& error) { // as in run_fem()
+      throw coupler::SettingsError(case_key(settings, error.key()), error.what());
+    }
     read_threads(settings);
   } catch (const coupler::SettingsError& error) {
     return error.key() + ": " + error.what();
@@ -74,6 +80,152 @@ TEST(FemSettings, are_read_as_they_are_written) {
   EXPECT_EQ(read.initial[0].pulse->spacing, 1e-3);
   EXPECT_EQ(read.initial[1].velocity->velocity, Vec<2>(0.5, 0.0));
   EXPECT_FALSE(read_threads(settings));
+}
+
+/// The material that JSON says, of a body in plane strain.
+template <class LawType> std::pair<LawType, Material> law_of(const std::string& material) {
+  json table = participant();
+  table["material"] = json::parse(material);
+  const Table settings(table, "");
+  const Mesh<2> mesh = read_mesh(settings, Period<2>{});
+  const Material read = read_materials(settings, mesh).at(0).material;
+  return {std::get<LawType>(read.law), read};
+}
+
+TEST(FemSettings, give_every_law_its_parameters) {
+  const auto [layered, small] = law_of<TransverselyIsotropic>(
+      R"({"model": "transversely_isotropic", "density": 2600, "young_in_plane": 4e10,
+          "young_normal": 2e10, "poisson_in_plane": 0.2, "poisson_normal": 0.15,
+          "shear_normal": 1e10, "axis": [3.0, 4.0, 0.0], "formulation": "one_point",
+          "hourglass_stiffness": 0.05, "linear_viscosity": 0.06, "quadratic_viscosity": 1.2})");
+  EXPECT_DOUBLE_EQ(layered.n[1], 0.8);
+  EXPECT_EQ(layered.mu_n, 1e10);
+  EXPECT_EQ(small.density(), 2600.0);
+  EXPECT_FALSE(small.finite_strain);
+  EXPECT_EQ(small.formulation, Formulation::one_point);
+  EXPECT_EQ(small.hourglass_stiffness, 0.05);
+  EXPECT_EQ(small.linear_viscosity, 0.06);
+  EXPECT_EQ(small.quadratic_viscosity, 1.2);
+
+  const auto [metal, large] = law_of<J2Plastic>(
+      R"({"model": "j2_plastic", "density": 8930, "young_modulus": 1.17e11, "poisson_ratio": 0.35,
+          "yield_stress": 4e8, "hardening_modulus": 1e8, "saturation_stress": 2e8,
+          "saturation_exponent": 10, "reference_rate": 40, "rate_exponent": 5,
+          "finite_strain": true, "formulation": "mean_dilatation"})");
+  EXPECT_EQ(metal.hardening.initial, 4e8);
+  EXPECT_EQ(metal.hardening.modulus, 1e8);
+  EXPECT_EQ(metal.hardening.saturation, 2e8);
+  EXPECT_EQ(metal.hardening.exponent, 10.0);
+  EXPECT_EQ(metal.rate.reference, 40.0);
+  EXPECT_EQ(metal.rate.exponent, 5.0);
+  EXPECT_TRUE(large.finite_strain);
+  EXPECT_EQ(large.formulation, Formulation::mean_dilatation);
+
+  const auto [tabled, of_table] = law_of<J2Plastic>(
+      R"({"model": "j2_plastic", "density": 8930, "young_modulus": 1.17e11, "poisson_ratio": 0.35,
+          "hardening_table": [[0.0, 4e8], [0.1, 5e8]]})");
+  EXPECT_EQ(tabled.hardening.points, 2);
+  EXPECT_DOUBLE_EQ(tabled.hardening.slope[0], 1e9);
+  EXPECT_EQ(of_table.hourglass_stiffness, Material{}.hourglass_stiffness);
+
+  const auto [damaged, of_damage] = law_of<IsotropicDamage>(
+      R"({"model": "isotropic_damage", "density": 2600, "young_modulus": 4e10,
+          "poisson_ratio": 0.2, "tensile_strength": 1e7, "fracture_energy": 100})");
+  EXPECT_EQ(damaged.tensile_strength, 1e7);
+  EXPECT_EQ(damaged.fracture_energy, 100.0);
+  EXPECT_EQ(damaged.strength_ratio, 10.0);
+}
+
+// Where the cone meets the axis, p = c cot(phi), whatever it is fitted to; outer is the larger.
+TEST(FemSettings, take_angles_in_degrees) {
+  const std::string rock = R"({"model": "drucker_prager", "density": 2600, "young_modulus": 4e10,
+                               "poisson_ratio": 0.2, "cohesion": 5e6, "friction_angle": 45)";
+  const DruckerPrager outer = law_of<DruckerPrager>(rock + "}").first;
+  EXPECT_NEAR(outer.cutoff, 5e6, 1e-6);
+  EXPECT_EQ(outer.flow_eta, 0.0);
+  const DruckerPrager inner =
+      law_of<DruckerPrager>(rock + R"(, "fit": "inner", "dilation_angle": 45,
+                                        "tension_cutoff": 1e6})")
+          .first;
+  EXPECT_LT(inner.eta, outer.eta);
+  EXPECT_EQ(inner.flow_eta, inner.eta);
+  EXPECT_EQ(inner.cutoff, 1e6);
+}
+
+TEST(FemSettings, give_regions_and_boxes_materials_of_their_own) {
+  json table = participant();
+  table["mesh"] = {{"type", "tunnel"}, {"origin", {0.0, 0.0}}, {"size", {8.0, 8.0}},
+                   {"radius", 1.0},    {"count", {4, 8}},      {"excavation", true}};
+  table["boundary"] = json::array();
+  json soft = table["material"];
+  soft["density"] = 1000.0;
+  soft["region"] = "excavation";
+  json corner = table["material"];
+  corner["density"] = 3000.0;
+  corner["box"] = {{0.0, 0.0}, {4.0, 8.0}};
+  table["materials"] = {soft, corner};
+  table["plane"] = "axisymmetric";
+  table["gravity"] = {0.0, -9.81};
+  table["damping"] = {{"mass", 100.0}, {"local", 0.2}};
+  const Table settings(table, "");
+  const Mesh<2> mesh = read_mesh(settings, Period<2>{});
+  const Settings<2> read = read_settings(settings, mesh);
+  ASSERT_EQ(read.materials.size(), 3u);
+  EXPECT_EQ(read.materials[0].material.density(), 2358.0);
+  EXPECT_EQ(read.materials[1].material.density(), 1000.0);
+  EXPECT_EQ(read.materials[1].region, "excavation");
+  EXPECT_EQ(read.materials[2].box->upper, Vec<2>(4.0, 8.0));
+  EXPECT_EQ(read.plane, Plane::axisymmetric);
+  EXPECT_EQ(read.gravity, Vec<2>(0.0, -9.81));
+  EXPECT_EQ(read.mass_damping, 100.0);
+  EXPECT_EQ(read.local_damping, 0.2);
+}
+
+TEST(FemSettings, of_materials_are_refused_with_the_key_that_the_case_has) {
+  const auto add = [](json& t, const char* key, const json& value) {
+    t["materials"] = json::array({t["material"]});
+    t["materials"][0][key] = value;
+  };
+  EXPECT_EQ(refusal([](json& t) { t["material"]["formulation"] = "nodal_pressure"; }),
+            "material.formulation: nodal_pressure is of tri3 and tet4; quad4 has full, "
+            "mean_dilatation or one_point");
+  const json outside = {{9.0, 9.0}, {10.0, 10.0}};
+  EXPECT_EQ(refusal([&](json& t) { add(t, "box", outside); }),
+            "materials[0].box: no element of the mesh has its centre in the box");
+  EXPECT_EQ(refusal([&](json& t) {
+              add(t, "box", outside);
+              t["material"] = nullptr;
+            }),
+            "materials[0].box: no element of the mesh has its centre in the box");
+  EXPECT_EQ(refusal([&](json& t) {
+              add(t, "box", json{{0.01, 0.0}, {0.05, 0.007}});
+              t["material"] = nullptr;
+            }),
+            "materials: element 40 has no material");
+  EXPECT_EQ(refusal([&](json& t) { add(t, "region", "vein"); }),
+            "materials[0].region: the mesh has no region \"vein\", and no other\ngive a box "
+            "instead");
+  EXPECT_EQ(refusal([](json& t) {
+              t["mesh"] = {{"type", "tunnel"}, {"origin", {0.0, 0.0}}, {"size", {8.0, 8.0}},
+                           {"radius", 1.0},    {"count", {4, 8}},      {"excavation", true}};
+              t["materials"] = json::array({t["material"]});
+              t["materials"][0]["region"] = "excavatoin";
+            }),
+            "materials[0].region: the mesh has no region \"excavatoin\"; did you mean "
+            "\"excavation\"? Its regions are excavation, rock");
+  EXPECT_EQ(refusal([](json& t) { t["material"]["density"] = -1.0; }),
+            "material.density: -1 kg/m³ must be positive");
+  EXPECT_EQ(refusal([](json& t) { t["material"]["model"] = "linear"; }),
+            "material.model: \"linear\" must be one of linear_elastic, transversely_isotropic, "
+            "neo_hookean, j2_plastic, drucker_prager, isotropic_damage");
+  EXPECT_EQ(refusal([](json& t) {
+              t["material"] = {{"model", "isotropic_damage"}, {"density", 2600.0},
+                               {"young_modulus", 4e10},       {"poisson_ratio", 0.2},
+                               {"tensile_strength", 1e7},     {"fracture_energy", 1e-3}};
+            }).substr(0, 60),
+            "material.fracture_energy: 0.001 J/m² is too little for an e");
+  EXPECT_EQ(refusal([](json& t) { t["material"] = nullptr; }),
+            "material: it is missing; give a table");
 }
 
 TEST(FemSettings, take_the_period_from_the_case) {
