@@ -49,7 +49,7 @@ inline void step_under(fem::Engine<2>& engine, const Load& load) {
 }
 
 /// Steps under a load until the body rests: its speed, times the time of the mass damping, is below
-/// 1e-5 of its displacement. Damping of twice the lowest frequency is the fastest.
+/// 1e-4 of its displacement. Damping of twice the lowest frequency is the fastest.
 /// @return displacements, [num_nodes][2] m
 /// @pre the engine has been started
 /// @throws std::runtime_error when it still moves after a million steps

@@ -18,7 +18,8 @@ def name_of(run):
     words = [run["shape"], run["law"], "finite strain" if run["finite_strain"] else "",
              {"strain": "plane strain" if run["dimension"] == 2 else "", "stress": "plane stress",
               "axisymmetric": "axisymmetric"}[run["plane"]],
-             "mean dilatation" if run["mean_dilatation"] else ""]
+             {"full": "", "mean_dilatation": "mean dilatation",
+              "one_point": "one point, no hourglass control"}[run["formulation"]]]
     return ", ".join(word for word in words if word)
 
 

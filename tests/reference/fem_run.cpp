@@ -22,8 +22,8 @@ constexpr double yield_stress = 20e6, hardening_modulus = 500e6; // Pa
 struct Run {
   std::string law; // elastic, neo_hookean or j2
   bool finite_strain = false;
-  std::string plane = "strain"; // stress, axisymmetric
-  bool mean_dilatation = false;
+  std::string plane = "strain";     // stress, axisymmetric
+  std::string formulation = "full"; // mean_dilatation, one_point
 };
 
 std::vector<Run> runs_of(Shape shape) {
@@ -39,12 +39,16 @@ std::vector<Run> runs_of(Shape shape) {
     runs.push_back({.law = "j2", .finite_strain = true, .plane = "axisymmetric"});
   }
   if (shape == Shape::quad4 || shape == Shape::hex8) {
-    runs.push_back({.law = "elastic", .mean_dilatation = true});
-    runs.push_back({.law = "j2", .finite_strain = true, .mean_dilatation = true});
+    runs.push_back({.law = "elastic", .formulation = "mean_dilatation"});
+    runs.push_back({.law = "j2", .finite_strain = true, .formulation = "mean_dilatation"});
+    runs.push_back({.law = "elastic", .formulation = "one_point"});
+    runs.push_back({.law = "j2", .finite_strain = true, .formulation = "one_point"});
   }
   if (shape == Shape::quad4)
-    runs.push_back(
-        {.law = "j2", .finite_strain = true, .plane = "axisymmetric", .mean_dilatation = true});
+    runs.push_back({.law = "j2",
+                    .finite_strain = true,
+                    .plane = "axisymmetric",
+                    .formulation = "mean_dilatation"});
   return runs;
 }
 
@@ -68,15 +72,17 @@ template <int dim> json result_of(Shape shape, const Run& run) {
   side.components.fill(true);
   side.motion = Motion::velocity;
   side.velocity = Vec<dim>::Unit(1) * 0.02 * c;
-  Engine<dim> engine(mesh,
-                     {.materials = cases::of<dim>(law_of(run),
-                                                  run.mean_dilatation ? Formulation::mean_dilatation
-                                                                      : Formulation::full,
-                                                  run.finite_strain),
-                      .plane = ring                    ? Plane::axisymmetric
-                               : run.plane == "stress" ? Plane::stress
-                                                       : Plane::strain,
-                      .boundary = {side}});
+  Material material{.law = law_of(run),
+                    .finite_strain = run.finite_strain,
+                    .formulation = run.formulation == "full"        ? Formulation::full
+                                   : run.formulation == "one_point" ? Formulation::one_point
+                                                                    : Formulation::mean_dilatation};
+  material.hourglass_stiffness = 0.0; // another code has another control
+  Engine<dim> engine(mesh, {.materials = {{.material = material, .region = {}, .box = {}}},
+                            .plane = ring                    ? Plane::axisymmetric
+                                     : run.plane == "stress" ? Plane::stress
+                                                             : Plane::strain,
+                            .boundary = {side}});
 
   std::vector<double> velocity(mesh.positions.size());
   for (std::size_t k = 0; k < velocity.size(); ++k) {
@@ -93,7 +99,7 @@ template <int dim> json result_of(Shape shape, const Run& run) {
           {"law", run.law},
           {"finite_strain", run.finite_strain},
           {"plane", run.plane},
-          {"mean_dilatation", run.mean_dilatation},
+          {"formulation", run.formulation},
           {"density", rock.density},
           {"lambda", rock.moduli.lambda},
           {"mu", rock.moduli.mu},

@@ -38,13 +38,16 @@ class Body:
         self.w = ufl.TestFunction(self.V)
         self.force = fem.Function(self.V)
         one = ufl.as_vector([1.0] * self.dim)
-        self.mass = self.assemble(fem.form(run["density"] * ufl.inner(one, self.w) * self.weight * self.dx))
+        density = run["density"] * self.weight
+        self.mass = self.assemble(fem.form(density * ufl.inner(one, self.w) * self.dx))
         # Row of the input for every node here.
         geometry = self.domain.geometry
+        given = np.array(geometry.input_global_indices)
         self.row = np.empty(len(X), dtype=int)
         for c in range(len(cells)):
-            self.row[self.V.dofmap.cell_dofs(c)] = np.array(geometry.input_global_indices)[geometry.dofmap.links(c)]
-        self.law = {"elastic": Elastic, "neo_hookean": NeoHookean, "j2": Plastic}[run["law"]](self)
+            self.row[self.V.dofmap.cell_dofs(c)] = given[geometry.dofmap.links(c)]
+        law = {"elastic": Elastic, "neo_hookean": NeoHookean, "j2": Incremental}[run["law"]]
+        self.law = (Incremental if run["formulation"] == "one_point" else law)(self)
 
     def assemble(self, form):
         self.force.x.array[:] = 0
@@ -77,17 +80,23 @@ class Body:
 
 
 class ElementMean:
-    """Of a scalar, over the volume of each element."""
+    """Of a scalar or tensor, over the volume of each element."""
 
-    def __init__(self, body, scalar, volume=1.0):
-        Q = fem.FunctionSpace(body.domain, ("Discontinuous Lagrange", 0))
-        q = ufl.TestFunction(Q)
+    def __init__(self, body, value, volume=1.0):
+        shape = value.ufl_shape
+        Q = (fem.TensorFunctionSpace(body.domain, ("Discontinuous Lagrange", 0), shape=shape) if shape
+             else fem.FunctionSpace(body.domain, ("Discontinuous Lagrange", 0)))
         self.function = fem.Function(Q)
-        self.sum = fem.form(scalar * q * volume * body.weight * body.dx)
-        self.volume = fem.form(q * volume * body.weight * body.dx)
+        one = fem.FunctionSpace(body.domain, ("Discontinuous Lagrange", 0))
+        self.sum = fem.form(ufl.inner(value, ufl.TestFunction(Q)) * volume * body.weight * body.dx)
+        self.volume = fem.form(ufl.TestFunction(one) * volume * body.weight * body.dx)
 
     def update(self):
-        self.function.x.array[:] = fem.assemble_vector(self.sum).array / fem.assemble_vector(self.volume).array
+        """-> [cells, size of the value]"""
+        volume = fem.assemble_vector(self.volume).array
+        mean = fem.assemble_vector(self.sum).array.reshape(len(volume), -1) / volume[:, None]
+        self.function.x.array[:] = mean.ravel()
+        return mean
 
 
 class Elastic:
@@ -97,7 +106,8 @@ class Elastic:
             lam = 2 * lam * mu / (lam + 2 * mu)
         strain, virtual = ufl.sym(body.gradient(body.u)), ufl.sym(body.gradient(body.w))
         volumetric = ufl.tr(strain)
-        self.mean = ElementMean(body, volumetric) if body.run["mean_dilatation"] else None
+        barred = body.run["formulation"] == "mean_dilatation"
+        self.mean = ElementMean(body, volumetric) if barred else None
         pressure = (lam + 2 / 3 * mu) * (self.mean.function if self.mean else volumetric)
         work = 2 * mu * ufl.inner(ufl.dev(strain), virtual) + pressure * ufl.tr(virtual)
         self.form = fem.form(work * body.weight * body.dx)
@@ -114,22 +124,23 @@ class NeoHookean:
         C, J = F.T * F, ufl.det(F)
         lam, mu = body.run["lambda"], body.run["mu"]
         energy = mu / 2 * (ufl.tr(C) - 3) - mu * ufl.ln(J) + lam / 2 * ufl.ln(J)**2
-        self.form = fem.form(ufl.inner(ufl.diff(energy, F), body.gradient(body.w)) * body.weight * body.dx)
+        work = ufl.inner(ufl.diff(energy, F), body.gradient(body.w))
+        self.form = fem.form(work * body.weight * body.dx)
 
     def internal(self):
         return self.form
 
 
-class Plastic:
-    """J2 with linear hardening, radial return; in finite strain with the increment in the middle of
-    the step and the rotation of Hughes and Winget."""
+class Incremental:
+    """Elastic, or J2 with linear hardening and radial return; in finite strain with the increment in
+    the middle of the step and the rotation of Hughes and Winget. One point: the mean gradient over
+    the element."""
 
     def __init__(self, body):
         self.body, self.first = body, True
         run, domain = body.run, body.domain
         self.finite = run["finite_strain"]
         self.cells = np.arange(domain.topology.index_map(domain.topology.dim).size_local, dtype=np.int32)
-        points, _ = basix.make_quadrature(getattr(basix.CellType, CELL[run["shape"]]), body.degree)
         self.pairs = PAIRS[body.dim]
         increment = body.gradient(body.u - body.before)
         virtual = body.gradient(body.w)
@@ -139,30 +150,42 @@ class Plastic:
             F, middle = one + body.gradient(body.u), one + body.gradient((body.u + body.before) / 2)
             increment, virtual = increment * ufl.inv(middle), virtual * ufl.inv(F)
             volume, middle_volume = ufl.det(F), ufl.det(middle)
-        self.increment = fem.Expression(increment, points)
-        self.points = len(points)
-        Q = fem.FunctionSpace(domain, ufl.VectorElement("Quadrature", CELL[run["shape"]], body.degree,
-                                                        dim=len(self.pairs), quad_scheme="default"))
+        if run["formulation"] == "one_point":
+            self.increment, points = ElementMean(body, increment, middle_volume), [0]
+            Q = fem.VectorFunctionSpace(domain, ("Discontinuous Lagrange", 0), dim=len(self.pairs))
+        else:
+            cell = CELL[run["shape"]]
+            points, _ = basix.make_quadrature(getattr(basix.CellType, cell), body.degree)
+            self.increment = fem.Expression(increment, points)
+            Q = fem.FunctionSpace(domain, ufl.VectorElement("Quadrature", cell, body.degree,
+                                                            dim=len(self.pairs),
+                                                            quad_scheme="default"))
         self.kept = fem.Function(Q)
         index = {pair: k for k, pair in enumerate(self.pairs)}
-        stress = ufl.as_tensor([[self.kept[index[min(i, j), max(i, j)]] if (min(i, j), max(i, j)) in index
-                                 else 0 for j in range(3)] for i in range(3)])
+
+        def component(*pair):
+            return self.kept[index[pair]] if pair in index else 0
+
+        stress = ufl.as_tensor([[component(min(i, j), max(i, j)) for j in range(3)]
+                                for i in range(3)])
         self.mean = self.mean_pressure = None
-        if run["mean_dilatation"]:
+        if run["formulation"] == "mean_dilatation":
             self.mean = ElementMean(body, ufl.tr(increment), middle_volume)
             self.mean_pressure = ElementMean(body, ufl.tr(stress) / 3, volume)
             stress = ufl.dev(stress) + self.mean_pressure.function * ufl.Identity(3)
         self.form = fem.form(ufl.inner(stress, virtual) * volume * body.weight * body.dx)
-        shape = (len(self.cells), self.points)
+        shape = (len(self.cells), len(points))
         self.stress, self.plastic = np.zeros((*shape, 3, 3)), np.zeros(shape)
 
     def internal(self):
         if not self.first:
-            G = self.increment.eval(self.cells).reshape(*self.plastic.shape, 3, 3)
-            self.follow(G)
+            G = (self.increment.update() if isinstance(self.increment, ElementMean)
+                 else self.increment.eval(self.cells))
+            self.follow(G.reshape(*self.plastic.shape, 3, 3))
         self.first = False
         self.body.before.x.array[:] = self.body.u.x.array
-        self.kept.x.array[:] = np.stack([self.stress[..., i, j] for i, j in self.pairs], axis=-1).ravel()
+        components = [self.stress[..., i, j] for i, j in self.pairs]
+        self.kept.x.array[:] = np.stack(components, axis=-1).ravel()
         if self.mean_pressure:
             self.mean_pressure.update()
         return self.form
@@ -184,7 +207,8 @@ class Plastic:
         stress = stress + lam * trace * one + 2 * mu * strain
         s = stress - np.trace(stress, axis1=-2, axis2=-1)[..., None, None] / 3 * one
         q = np.sqrt(1.5 * np.sum(s * s, axis=(-2, -1)))
-        dp = np.maximum(q - run["yield_stress"] - H * self.plastic, 0) / (3 * mu + H)
+        strength = run["yield_stress"] + H * self.plastic if run["law"] == "j2" else np.inf
+        dp = np.maximum(q - strength, 0) / (3 * mu + H)
         self.stress = stress - (3 * mu * dp / np.where(q > 0, q, 1))[..., None, None] * s
         self.plastic = self.plastic + dp
 

@@ -1,5 +1,6 @@
 # The finite element engine against closed forms and published numbers.
 add_executable(fem_verification_tests
+  ${CMAKE_CURRENT_LIST_DIR}/fem_beams.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_elasticity.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_standing_waves.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_taylor_bar.cpp
