@@ -2,6 +2,8 @@
 #include "tests/cases/fem_loads.hpp"
 #include "tests/verification/verification.hpp"
 
+#include "fem_core/mesh/disc.hpp"
+
 #include <gtest/gtest.h>
 
 namespace kerf::fem {
@@ -80,6 +82,15 @@ TEST(FemTaylorBar, of_rings_ends_as_short_and_as_wide_as_in_other_codes) {
                 Plane::axisymmetric, 1,
                 {cases::held<2>("bottom", {false, true}), cases::held<2>("left", {true, false})}),
       "quad4 rings");
+}
+
+// A whole rod, free of symmetry. Its outline has 16 sides with their corners on the circle: the
+// length does not care, and the foot is measured at the corners too.
+TEST(FemTaylorBar, of_bricks_ends_as_short_and_as_wide_as_in_other_codes) {
+  verify_rod(strike<3>(make_cylinder({.radius = radius, .radial = 2, .around = 16},
+                                     {.length = length, .count = 32}),
+                       Plane::strain, 2, {cases::held<3>("bottom", {false, false, true})}),
+             "hex8");
 }
 
 } // namespace
