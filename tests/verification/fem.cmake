@@ -2,6 +2,7 @@
 add_executable(fem_verification_tests
   ${CMAKE_CURRENT_LIST_DIR}/fem_beams.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_elasticity.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/fem_manufactured.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_standing_waves.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_taylor_bar.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_wave_speeds.cpp)

@@ -9,7 +9,8 @@
 namespace kerf::fem {
 namespace {
 
-constexpr double length = 32.4e-3, radius = 3.2e-3, speed = 227.0, end_time = 80e-6;
+constexpr double length = 32.4e-3, radius = 3.2e-3; // m
+constexpr double speed = 227.0, end_time = 80e-6;   // m/s, s
 
 Material copper(Formulation formulation) {
   return {.law = J2Plastic::from(IsotropicElastic::from_young(8930.0, 117e9, 0.35),
@@ -63,7 +64,7 @@ Rod strike(Mesh<dim> mesh, Formulation formulation, Plane plane, int axis,
   return rod;
 }
 
-const std::string published = "range of codes, A. Kamoulakos, Bench Mark (1990) 31-35";
+const std::string published = "range of codes; compare A. Kamoulakos, Bench Mark (1990) 31-35";
 
 void verify_rod(const Rod& rod, const std::string& elements) {
   verify({"length of a Taylor bar of " + elements + ", mm", published + ": 21.4 to 21.6", 0.1,
@@ -76,7 +77,7 @@ void verify_rod(const Rod& rod, const std::string& elements) {
   EXPECT_GT(rod.plastic, 2.0);
 }
 
-// The mesh of the published runs. Mean dilatation is needed: with full integration the plastic flow
+// Mean dilatation is needed: with full integration the plastic flow
 // locks, and the foot ends with a radius of 5.1 mm. Without friction the wall is a side on which
 // the foot slides.
 TEST(FemTaylorBar, of_rings_ends_as_short_and_as_wide_as_in_other_codes) {
