@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/vec.hpp"
-#include "dem_core/time_table.hpp"
+#include "common/time_table.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "fem_core/boundary.hpp"
 
+#include "fem_core/face.hpp"
 #include "fem_core/input_error.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,12 @@ double displacement_at(const BoundarySetting<dim>& setting, int component, doubl
     const double s = std::sin(std::numbers::pi * time / setting.duration);
     return setting.amplitude[component] * s * s; // (1 - cos 2x) / 2 without its cancellation
   }
+  case Motion::displacement_table:
+    return setting.table[static_cast<std::size_t>(component)].value(time);
+  case Motion::velocity_table:
+    return setting.table[static_cast<std::size_t>(component)].integral(time);
   case Motion::fixed:
+  case Motion::symmetry:
     break;
   }
   return 0.0;
@@ -52,6 +58,28 @@ template <int dim> void check(const BoundarySetting<dim>& setting, const std::st
     throw InputError(key + ".duration", fmt::format("{} s must be positive", setting.duration));
 }
 
+/// The components that a plane of symmetry holds.
+template <int dim>
+std::array<bool, dim> normal_of(const Mesh<dim>& mesh, const std::string& tag,
+                                const std::string& key) {
+  const auto faces = mesh.boundary.find(tag);
+  if (faces == mesh.boundary.end())
+    throw InputError(key + ".tag",
+                     fmt::format("symmetry needs a tag of faces; \"{}\" has none", tag));
+  std::array<bool, dim> components{};
+  for (const Face& face : faces->second) {
+    const Vec<dim> normal = area_vector<dim>(face_corners(mesh, face, mesh.positions)).normalized();
+    Eigen::Index axis = 0;
+    if (!(normal.cwiseAbs().maxCoeff(&axis) > 1.0 - 1e-9))
+      throw InputError(key + ".tag",
+                       fmt::format("the normal of a face of \"{}\" is not along an axis; symmetry "
+                                   "holds planes across an axis",
+                                   tag));
+    components[static_cast<std::size_t>(axis)] = true;
+  }
+  return components;
+}
+
 } // namespace
 
 template <int dim>
@@ -59,6 +87,8 @@ Boundary<dim>::Boundary(const Mesh<dim>& mesh, std::vector<BoundarySetting<dim>>
     : settings_(std::move(settings)), setting_of_(mesh.num_nodes() * dim, none) {
   for (std::uint32_t k = 0; k < settings_.size(); ++k) {
     const std::string key = fmt::format("boundary[{}]", k);
+    if (settings_[k].motion == Motion::symmetry)
+      settings_[k].components = normal_of(mesh, settings_[k].tag, key);
     check(settings_[k], key);
     for (const std::uint32_t node : select(mesh, settings_[k], key))
       for (int i = 0; i < dim; ++i)

@@ -36,6 +36,11 @@ public:
   /// Velocity from t_n to t_(n+1), m/s.
   double velocity(std::uint32_t node, int component, std::int64_t n, double time_step) const;
 
+  /// The setting that prescribes a component.
+  std::size_t setting_of(const Prescribed& entry) const {
+    return setting_of_[std::size_t{entry.node} * dim + static_cast<std::size_t>(entry.component)];
+  }
+
 private:
   static constexpr std::uint32_t none = 0xffffffff;
 

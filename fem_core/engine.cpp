@@ -11,19 +11,18 @@
 #include <stdexcept>
 
 namespace kerf::fem {
-namespace {
-
-constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t rows_per_block = 1024;
-
-} // namespace
-
 template <int dim>
 Engine<dim>::Engine(Mesh<dim> mesh, Settings<dim> settings)
-    : mesh_(std::move(mesh)), settings_(std::move(settings)), boundary_(mesh_, settings_.boundary) {
+    : mesh_(std::move(mesh)), settings_(std::move(settings)), boundary_(mesh_, settings_.boundary),
+      loads_(mesh_, settings_.loads, space()), walls_(mesh_, settings_.walls) {
   std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
   add_initial<dim>(mesh_, settings_.initial, u, v); // throws now, not when the run starts
   assign_materials();
+  removed_.assign(mesh_.num_elements(), false);
+  absorbing_ = Absorbing<dim>(mesh_, settings_.absorbing, space(), [this](std::uint32_t e) {
+    const Material& material = settings_.materials[material_of_[e]].material;
+    return Medium{.moduli = material.bound(), .density = material.density()};
+  });
   set_weights({});
 }
 
@@ -74,15 +73,23 @@ template <int dim> void Engine<dim>::set_weights(std::span<const double> alpha) 
       throw std::invalid_argument(
           fmt::format("the weight of node {} is {}; it must be from 0 to 1", a, alpha[a]));
   alpha_.assign(alpha.begin(), alpha.end());
+  find_active();
+  make_groups();
+  make_masses();
+}
+
+template <int dim> void Engine<dim>::find_active() {
   active_.clear();
   for (std::uint32_t e = 0; e < mesh_.num_elements(); ++e) {
     const auto nodes = mesh_.nodes_of_element(e);
-    if (alpha_.empty() ||
-        std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t a) { return alpha_[a] > 0.0; }))
+    if (!removed_[e] &&
+        (alpha_.empty() ||
+         std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t a) { return alpha_[a] > 0.0; })))
       active_.push_back(e);
   }
-  make_groups();
+}
 
+template <int dim> void Engine<dim>::make_masses() {
   mass_.assign(patches_.num_rows(), 0.0);
   for (const std::uint32_t e : active_) {
     const ElementModel<dim> model = model_of(e);
@@ -122,6 +129,13 @@ template <int dim> void Engine<dim>::make_groups() {
   std::vector<bool> special(mesh_.num_nodes(), false);
   for (const Prescribed& entry : boundary_.entries())
     special[entry.node] = true;
+  for (const std::uint32_t a : loads_.nodes())
+    special[a] = true;
+  for (const auto& absorbing : absorbing_.nodes())
+    special[absorbing.node] = true;
+  for (std::size_t wall = 0; wall < walls_.size(); ++wall)
+    for (const std::uint32_t a : walls_.nodes(wall))
+      special[a] = true;
   patches_ = Patches(mesh_, std::move(groups), special);
 
   groups_.clear();
@@ -142,7 +156,8 @@ template <int dim> void Engine<dim>::make_groups() {
       group_of_[elements[k]] = static_cast<std::uint32_t>(g);
     }
     const Material& of_group = settings_.materials[material[g]].material;
-    groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths));
+    groups_.push_back(make_group(of_group, patches_.groups[g].shape, settings_.plane, lengths,
+                                 settings_.in_situ_stress.has_value()));
     if (alpha_.empty())
       continue;
     GroupKernel& group = groups_.back();
@@ -241,7 +256,7 @@ template <int dim> void Engine<dim>::start(double time_step) {
   if (!(time_step > 0.0))
     throw std::invalid_argument(fmt::format("the time step {} s must be positive", time_step));
   time_step_ = time_step;
-  step_ = 0;
+  step_ = changed_at_ = 0;
   std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
   add_initial<dim>(mesh_, settings_.initial, u, v);
   const std::size_t rows = patches_.num_rows();
@@ -259,7 +274,14 @@ template <int dim> void Engine<dim>::start(double time_step) {
   interface_force_ = {};
   element_work_ = {};
   sums_ = {};
-  damped_work_ = reaction_work_ = gravity_work_ = interface_work_ = {};
+  load_force_.assign(loads_.nodes().size() * dim, 0.0);
+  reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
+  wall_forces_.assign(walls_.size(), Vec<dim>::Zero());
+  damped_work_ = external_work_ = interface_work_ = {};
+  origin_ = Rows<dim>(rows);
+  if (settings_.in_situ_stress)
+    set_in_situ_stress();
+  support_absorbing();
 }
 
 template <int dim>
@@ -283,210 +305,11 @@ void Engine<dim>::motion(std::span<const std::uint32_t> nodes, std::span<double>
       position[k * dim + i] =
           mesh_.positions[std::size_t{nodes[k]} * dim + i] + displacement_[row][i];
       const bool moved = boundary_.is_prescribed(nodes[k], i) && mass_[row] > 0.0;
-      velocity[k * dim + i] =
-          moved ? boundary_.velocity(nodes[k], i, step_, time_step_) : velocity_[row][i];
+      velocity[k * dim + i] = moved
+                                  ? boundary_.velocity(nodes[k], i, step_ - changed_at_, time_step_)
+                                  : velocity_[row][i];
     }
   }
-}
-
-template <int dim> void Engine<dim>::compute_own_forces() {
-  for (const std::uint32_t row : interface_rows_)
-    interface_force_[row].setZero();
-  interface_rows_.clear();
-  compute_forces(false);
-  forces_are_current_ = true;
-}
-
-/// Computes the internal forces of all patches. A patch that need not wait for others finishes its
-/// own rows while they are in the cache.
-template <int dim> void Engine<dim>::compute_forces(bool finish) {
-  // There has been no increment before the first step.
-  const PatchMotion<dim> motion{reference_, displacement_, velocity_,
-                                step_ == 0 ? 0.0 : time_step_};
-  const StepSettings<dim> step = step_settings();
-  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
-  std::vector<ElementWork> work(patches_.patches.size());
-  patch_sums_.assign(patches_.patches.size(), {});
-#pragma omp parallel if (num_patches > 1)
-  {
-    PatchScratch<dim> scratch(patches_);
-#pragma omp for schedule(static)
-    for (std::int64_t p = 0; p < num_patches; ++p) {
-      const auto k = static_cast<std::size_t>(p);
-      const Patch& patch = patches_.patches[k];
-      work[k] = compute_patch<dim>(patches_, patch, groups_[patch.group], motion, false, scratch);
-      std::copy_n(scratch.force.at(patch.num_own), patch.num_shared * row_size<dim>,
-                  parts_.at(patch.first_shared));
-      if (finish)
-        advance<dim>(step, patch.num_own, &mass_[patch.first_row], scratch.force.data(), nullptr,
-                     velocity_.at(patch.first_row), displacement_.at(patch.first_row),
-                     patch_sums_[k]);
-      else
-        std::copy_n(scratch.force.data(), patch.num_own * row_size<dim>,
-                    force_.at(patch.first_row));
-    }
-  }
-  for (const ElementWork& of_patch : work) {
-    element_work_.internal += of_patch.internal;
-    element_work_.dissipated += of_patch.dissipated;
-    element_work_.hourglass += of_patch.hourglass;
-    element_work_.viscous += of_patch.viscous;
-  }
-  const auto num_special = static_cast<std::int64_t>(patches_.num_special);
-#pragma omp parallel for schedule(static) if (num_special > 1000)
-  for (std::int64_t k = 0; k < num_special; ++k) {
-    Row<dim> sum;
-    for (std::uint32_t part = patches_.first_part[k]; part < patches_.first_part[k + 1]; ++part)
-      for (int i = 0; i < row_size<dim>; ++i)
-        sum.x[i] += parts_.at(patches_.parts[part])[i];
-    std::copy_n(sum.x, row_size<dim>, force_.at(patches_.num_plain + static_cast<std::size_t>(k)));
-  }
-}
-
-template <int dim> StepSettings<dim> Engine<dim>::step_settings() const {
-  return {.time_step = time_step_,
-          .first = step_ == 0,
-          .gravity = settings_.gravity,
-          .mass_damping = settings_.mass_damping,
-          .local_damping = settings_.local_damping};
-}
-
-template <int dim>
-void Engine<dim>::own_forces(std::span<const std::uint32_t> nodes, std::span<double> force) const {
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    for (int i = 0; i < dim; ++i)
-      force[k * dim + i] = force_[patches_.row_of_node[nodes[k]]][i];
-}
-
-template <int dim>
-void Engine<dim>::add_interface_forces(std::span<const std::uint32_t> nodes,
-                                       std::span<const double> force) {
-  if (interface_force_.size() == 0)
-    interface_force_ = Rows<dim>(patches_.num_rows());
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const std::uint32_t row = patches_.row_of_node[nodes[k]];
-    interface_force_[row] += Eigen::Map<const Vec<dim>>(&force[k * dim]);
-    interface_rows_.push_back(row);
-  }
-}
-
-template <int dim> void Engine<dim>::integrate() {
-  std::sort(interface_rows_.begin(), interface_rows_.end());
-  interface_rows_.erase(std::unique(interface_rows_.begin(), interface_rows_.end()),
-                        interface_rows_.end());
-  std::vector<Vec<dim>> interface_before;
-  for (const std::uint32_t row : interface_rows_) {
-    force_[row] += interface_force_[row];
-    interface_before.push_back(velocity_[row]);
-  }
-  std::vector<double> moved_before;
-  Rows<dim> prescribed(patches_.num_special);
-  std::fill_n(prescribed.data(), prescribed.size() * row_size<dim>, is_free);
-  for (const Moved& moved : moved_) {
-    moved_before.push_back(velocity_[moved.row][moved.component]);
-    prescribed[moved.row - patches_.num_plain][moved.component] =
-        boundary_.velocity(moved.node, moved.component, step_, time_step_);
-  }
-
-  if (forces_are_current_)
-    advance_plain();
-  else
-    compute_forces(true);
-  advance_special(prescribed);
-
-  const bool first = step_ == 0;
-  Work reactions, of_interface;
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    const Moved& moved = moved_[k];
-    const double after = velocity_[moved.row][moved.component];
-    const double reaction = mass_[moved.row] * ((after - moved_before[k]) / time_step_ -
-                                                settings_.gravity[moved.component]) -
-                            force_[moved.row][moved.component]; // N
-    reactions += {.before = 0.5 * time_step_ * reaction * moved_before[k],
-                  .after = 0.5 * time_step_ * reaction * after};
-    displacement_[moved.row][moved.component] =
-        initial_displacement_[k] +
-        boundary_.displacement(moved.node, moved.component, step_ + 1, time_step_);
-  }
-  for (std::size_t k = 0; k < interface_rows_.size(); ++k) {
-    const Vec<dim> f = interface_force_[interface_rows_[k]];
-    of_interface += {.before = 0.5 * time_step_ * f.dot(interface_before[k]),
-                     .after = 0.5 * time_step_ * f.dot(velocity_[interface_rows_[k]])};
-  }
-  reaction_work_.add(reactions, first);
-  interface_work_.add(of_interface, first);
-  gravity_work_.add(sums_.gravity, first);
-  damped_work_.add(sums_.damped, first);
-  forces_are_current_ = false;
-  ++step_;
-}
-
-/// Of the plain rows, by patches as when those finish them.
-template <int dim> void Engine<dim>::advance_plain() {
-  const StepSettings<dim> step = step_settings();
-  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
-  patch_sums_.assign(patches_.patches.size(), {});
-#pragma omp parallel for schedule(static) if (num_patches > 1)
-  for (std::int64_t p = 0; p < num_patches; ++p) {
-    const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
-    advance<dim>(step, patch.num_own, mass_.data() + patch.first_row, force_.at(patch.first_row),
-                 nullptr, velocity_.at(patch.first_row), displacement_.at(patch.first_row),
-                 patch_sums_[static_cast<std::size_t>(p)]);
-  }
-}
-
-template <int dim> void Engine<dim>::advance_special(const Rows<dim>& prescribed) {
-  const StepSettings<dim> step = step_settings();
-  const std::size_t first = patches_.num_plain, count = patches_.num_special;
-  const std::size_t blocks = (count + rows_per_block - 1) / rows_per_block;
-  std::vector<RowSums<dim>> sums(blocks);
-#pragma omp parallel for schedule(static) if (blocks > 1)
-  for (std::int64_t b = 0; b < static_cast<std::int64_t>(blocks); ++b) {
-    const std::size_t begin = static_cast<std::size_t>(b) * rows_per_block;
-    const std::size_t row = first + begin;
-    advance<dim>(step, std::min(rows_per_block, count - begin), &mass_[row], force_.at(row),
-                 prescribed.at(begin), velocity_.at(row), displacement_.at(row),
-                 sums[static_cast<std::size_t>(b)]);
-  }
-  sums_ = {};
-  for (const RowSums<dim>& of_patch : patch_sums_)
-    sums_ += of_patch;
-  for (const RowSums<dim>& of_block : sums)
-    sums_ += of_block;
-}
-
-/// Of the laws of total strain the energy is that of the displacements, u^n = u^(n+1) - v dt.
-template <int dim> Energies Engine<dim>::energies() const {
-  ElementWork work = element_work_;
-  Rows<dim> u = displacement_;
-  for (std::size_t row = 0; row < u.size(); ++row)
-    u[row] -= time_step_ * velocity_[row];
-  const PatchMotion<dim> motion{reference_, u, velocity_, time_step_};
-  const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
-  std::vector<ElementWork> of_patches(patches_.patches.size());
-#pragma omp parallel if (num_patches > 1)
-  {
-    PatchScratch<dim> scratch(patches_);
-#pragma omp for schedule(static)
-    for (std::int64_t p = 0; p < num_patches; ++p) {
-      const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
-      const GroupKernel& group = groups_[patch.group];
-      if (!group.increments) // which computing the energy does not change
-        of_patches[static_cast<std::size_t>(p)] = compute_patch<dim>(
-            patches_, patch, const_cast<GroupKernel&>(group), motion, true, scratch);
-    }
-  }
-  for (const ElementWork& of_patch : of_patches) {
-    work.internal += of_patch.internal;
-    work.hourglass += of_patch.hourglass;
-  }
-  return {.kinetic = sums_.kinetic,
-          .elastic = work.internal - work.dissipated,
-          .dissipated = work.dissipated,
-          .hourglass = work.hourglass,
-          .damped = damped_work_.at_step() + work.viscous,
-          .external_work = reaction_work_.at_step() + gravity_work_.at_step(),
-          .interface_work = interface_work_.at_step()};
 }
 
 template <int dim> std::vector<double> Engine<dim>::by_node(const Rows<dim>& rows) const {
@@ -500,6 +323,13 @@ template <int dim> std::vector<double> Engine<dim>::by_node(const Rows<dim>& row
 
 template <int dim> std::vector<double> Engine<dim>::displacement() const {
   return by_node(displacement_);
+}
+
+template <int dim> std::vector<double> Engine<dim>::displacement_since_reset() const {
+  Rows<dim> since = displacement_;
+  for (std::size_t row = 0; row < since.size(); ++row)
+    since[row] -= origin_[row];
+  return by_node(since);
 }
 
 template <int dim> std::vector<double> Engine<dim>::velocity() const {

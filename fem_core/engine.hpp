@@ -2,12 +2,16 @@
 #pragma once
 
 #include "common/state.hpp"
+#include "fem_core/absorbing.hpp"
 #include "fem_core/boundary.hpp"
+#include "fem_core/change.hpp"
 #include "fem_core/element_bounds.hpp"
 #include "fem_core/energy.hpp"
 #include "fem_core/integrate.hpp"
 #include "fem_core/internal_force.hpp"
+#include "fem_core/loads.hpp"
 #include "fem_core/mesh.hpp"
+#include "fem_core/rigid_walls.hpp"
 #include "fem_core/settings.hpp"
 
 #include <cstdint>
@@ -58,6 +62,10 @@ public:
   /// @param displacement, velocity  [num_nodes][dim] u^n, m, and v^(n-1/2), m/s
   void set_motion(std::span<const double> displacement, std::span<const double> velocity);
 
+  /// Changes what a change names, between two steps.
+  /// @throws InputError for an unknown region or what the parts refuse; nothing has changed then
+  void change(const Change<dim>& change);
+
   std::uint64_t step() const { return static_cast<std::uint64_t>(step_); } // n, between two steps
   /// All that steps have changed, between two steps.
   State state() const;
@@ -87,13 +95,19 @@ public:
   const Settings<dim>& settings() const { return settings_; }
   std::vector<double> mass() const;         // [num_nodes] kg
   std::vector<double> displacement() const; // [num_nodes][dim] u^n, m
-  std::vector<double> velocity() const;     // [num_nodes][dim] v^(n-1/2), m/s
+  /// [num_nodes][dim] since the last change that reset it, m
+  std::vector<double> displacement_since_reset() const;
+  std::vector<double> velocity() const; // [num_nodes][dim] v^(n-1/2), m/s
   /// Elements that take part, ascending.
   const std::vector<std::uint32_t>& active_elements() const { return active_; }
   /// The setting that an element has its material from.
   std::size_t material_of(std::uint32_t element) const { return material_of_[element]; }
   /// One that takes part, at the displacements of this moment.
   ElementState<dim> element_state(std::uint32_t element) const;
+  /// Force of the support on the body at the last t_n, of one of the boundary settings, N.
+  Vec<dim> reaction(std::size_t setting) const { return reactions_[setting]; }
+  /// Force of a rigid wall on the body in the last step, N.
+  Vec<dim> wall_force(std::size_t wall) const { return wall_forces_[wall]; }
   /// The first node whose motion is no longer a finite number.
   std::optional<std::uint32_t> first_non_finite() const;
 
@@ -106,22 +120,49 @@ private:
     std::uint32_t node;
   };
 
+  struct Pushed { // by a load, a dashpot or a wall during a step
+    std::uint32_t row;
+    Vec<dim> before;             // v^(n-1/2), m/s
+    Vec<dim> driving, resisting; // forces whose work is booked as external, and as damped, N
+  };
+
   ElementModel<dim> model_of(std::uint32_t element) const;
   void assign_materials();
+  void find_active();
   void make_groups();
+  void make_masses();
+  void set_in_situ_stress();
+  void support_absorbing();
+  Space space() const {
+    return settings_.plane == Plane::axisymmetric ? Space::axisymmetric : Space::plane;
+  }
   StepSettings<dim> step_settings() const;
+  Row<dim> sum_of_parts(std::size_t special) const;
+  void average_dilatation(std::uint32_t group, const PatchMotion<dim>& motion);
+  void add_loads();
   void compute_forces(bool finish);
   void advance_plain();
   void advance_special(const Rows<dim>& prescribed);
+  std::vector<Pushed> pushed_rows() const;
+  void push_by_dashpots(std::span<Pushed> pushed);
+  void push_by_walls(std::span<Pushed> pushed);
+  void push(std::uint32_t row, const Vec<dim>& before, const Vec<dim>& after,
+            const Vec<dim>& force);
+  double span_of_step() const;
+  bool is_held(std::uint32_t row, int component) const;
   std::vector<double> by_node(const Rows<dim>& rows) const;
 
   Mesh<dim> mesh_;
   Settings<dim> settings_;
   Boundary<dim> boundary_;
+  Loads<dim> loads_;
+  Absorbing<dim> absorbing_;
+  RigidWalls<dim> walls_;
   std::vector<std::uint32_t> material_of_; // [num_elements] setting
 
   // With the weights.
   std::vector<double> alpha_; // [num_nodes]; empty: one
+  std::vector<bool> removed_; // [num_elements]
   std::vector<std::uint32_t> active_;
   Patches patches_;
   std::vector<GroupKernel> groups_;
@@ -133,18 +174,22 @@ private:
 
   // At t_n.
   double time_step_ = 0.0;
-  std::int64_t step_ = 0;
+  std::int64_t step_ = 0, changed_at_ = 0; // where tables of boundaries and loads begin
   Rows<dim> displacement_, velocity_;
-  std::vector<double> initial_displacement_; // [moved]
-  Rows<dim> force_; // own, of special rows; of all, after compute_own_forces()
-  Rows<dim> parts_; // of special rows, what each patch adds
+  std::vector<double> initial_displacement_; // [moved], when their tables begin
+  Rows<dim> origin_;                         // of displacement_since_reset()
+  std::vector<Vec<dim>> support_; // [absorbing nodes] that keeps the in-situ stress there, N
+  Rows<dim> force_;               // own, of special rows; of all, after compute_own_forces()
+  Rows<dim> parts_;               // of special rows, what each patch adds
   bool forces_are_current_ = false;
   std::vector<std::uint32_t> interface_rows_;
-  Rows<dim> interface_force_;            // [rows]; empty until there is one
-  ElementWork element_work_{};           // of all steps
-  std::vector<RowSums<dim>> patch_sums_; // of the plain rows of the last step
-  RowSums<dim> sums_;                    // of all rows of the last step
-  WorkBook damped_work_, reaction_work_, gravity_work_, interface_work_;
+  Rows<dim> interface_force_;                     // [rows]; empty until there is one
+  ElementWork element_work_{};                    // of all steps
+  std::vector<RowSums<dim>> patch_sums_;          // of the plain rows of the last step
+  RowSums<dim> sums_;                             // of all rows of the last step
+  std::vector<double> load_force_;                // [loads_.nodes()][dim] of this step, N
+  std::vector<Vec<dim>> reactions_, wall_forces_; // of the last step, N
+  WorkBook damped_work_, external_work_, interface_work_;
 };
 
 } // namespace kerf::fem

@@ -42,11 +42,12 @@ template <int dim> PatchScratch<dim>::PatchScratch(const Patches& patches) {
     most = std::max<std::size_t>(most, patch.num_rows());
   for (Rows<dim>* rows : {&reference, &motion, &velocity, &force})
     rows->resize(most);
+  dilatation.resize(most);
 }
 
 template <int dim>
 ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
-                          const PatchMotion<dim>& motion, bool wants_energy,
+                          const PatchMotion<dim>& motion, Wanted wanted,
                           PatchScratch<dim>& scratch) {
   constexpr std::size_t size = sizeof(Row<dim>);
   const bool rate = group.kinematics == Kinematics::rate;
@@ -73,6 +74,13 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
         patches, patch,
         [&](std::uint32_t row, double* to) { std::memcpy(to, motion.velocity.at(row), size); },
         scratch.velocity);
+  if (!group.dilatation.empty() && wanted != Wanted::dilatation) {
+    std::copy_n(group.dilatation.data() + patch.first_row, patch.num_own,
+                scratch.dilatation.data());
+    for (std::uint32_t k = 0; k < patch.num_shared; ++k)
+      scratch.dilatation[patch.num_own + k] =
+          group.dilatation[patches.shared[patch.first_shared + k]];
+  }
   std::memset(scratch.force.data(), 0, patch.num_rows() * size);
 
   const Shape shape = patches.groups[patch.group].shape;
@@ -89,18 +97,18 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
       .force = scratch.force.data(),
       .alpha = part(group.alpha, per_batch(group.alpha), patch),
       .length = part(group.length, per_batch(group.length), patch),
-      .dilatation = part(group.dilatation, per_batch(group.dilatation), patch),
+      .dilatation = scratch.dilatation.data(),
       .stress = part(group.stress, per_batch(group.stress), patch),
       .history = part(group.history, per_batch(group.history), patch),
       .hourglass = part(group.hourglass, per_batch(group.hourglass), patch),
       .time_step = motion.time_step,
-      .wants_energy = wants_energy,
+      .wants_energy = wanted == Wanted::energy,
       .law = group.law,
       .moduli = group.moduli,
       .constants = group.constants,
       .work = {},
   };
-  group.compute(view);
+  (wanted == Wanted::dilatation ? group.compute_dilatation : group.compute)(view);
   return view.work;
 }
 
@@ -111,9 +119,9 @@ PatchKernel find_kernel(const KernelKey& key) {
 template class PatchScratch<2>;
 template class PatchScratch<3>;
 template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&,
-                                   const PatchMotion<2>&, bool, PatchScratch<2>&);
+                                   const PatchMotion<2>&, Wanted, PatchScratch<2>&);
 template ElementWork compute_patch(const Patches&, const Patch&, GroupKernel&,
-                                   const PatchMotion<3>&, bool, PatchScratch<3>&);
+                                   const PatchMotion<3>&, Wanted, PatchScratch<3>&);
 
 } // namespace fem
 } // namespace kerf

@@ -22,7 +22,9 @@ struct GroupKernel {
   ElementConstants constants = {};
 
   // Arrays of the group as PatchView has them; empty where there is nothing of the kind.
-  std::vector<double> alpha, length, dilatation;
+  std::vector<double> alpha, length;
+  PatchKernel compute_dilatation = nullptr;       // of nodal_pressure
+  std::vector<double> dilatation;                 // [num_rows]
   std::vector<double> stress, history, hourglass; // change in every step
   std::vector<double> initial_history;
 
@@ -48,13 +50,19 @@ public:
   explicit PatchScratch(const Patches& patches);
 
   Rows<dim> reference, motion, velocity, force;
+  std::vector<double> dilatation;
 };
 
-/// Computes -F^int of one patch into scratch.force, own rows first, and follows stress and history.
-/// @param wants_energy  instead: work.internal is the energy at u; nothing is followed
+/// What compute_patch() puts into scratch.force, own rows first.
+enum class Wanted {
+  force,      // -F^int; stress and history are followed
+  energy,     // the same, but nothing is followed, and work.internal is the energy at u
+  dilatation, // of the nodes of nodal_pressure: dilatation times volume, then volume
+};
+
 template <int dim>
 ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKernel& group,
-                          const PatchMotion<dim>& motion, bool wants_energy,
+                          const PatchMotion<dim>& motion, Wanted wanted,
                           PatchScratch<dim>& scratch);
 
 /// The kernel of this machine's instructions; null when there is none of the kind.

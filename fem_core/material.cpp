@@ -91,7 +91,7 @@ void check(const Material& material, Shape shape, Plane plane) {
 }
 
 GroupKernel make_group(const Material& material, Shape shape, Plane plane,
-                       std::span<const double> lengths) {
+                       std::span<const double> lengths, bool stored) {
   GroupKernel group;
   group.kinematics = kinematics_of(material);
   KernelKey key{.shape = shape,
@@ -110,7 +110,8 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
           plane == Plane::stress ? Response::hyperelastic_plane_stress : Response::hyperelastic;
     } else {
       constexpr bool linear = LinearLaw<LawType>;
-      group.increments = material.finite_strain || !linear;
+      group.increments = material.finite_strain || !linear || stored ||
+                         material.formulation == Formulation::nodal_pressure;
       if constexpr (std::is_base_of_v<IsotropicElastic, LawType>)
         if (!group.increments) {
           key.response = Response::elastic;
@@ -141,6 +142,10 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
                                                   .plane_stress = plane == Plane::stress,
                                                   .increments = group.increments});
   group.compute = find_kernel(key);
+  if (material.formulation == Formulation::nodal_pressure) {
+    key.response = Response::none;
+    group.compute_dilatation = find_kernel(key);
+  }
   group.points = static_cast<int>(points);
   if (material.formulation == Formulation::one_point) {
     group.constants.hourglass = material.hourglass_stiffness * material.bound().uniaxial();

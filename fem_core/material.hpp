@@ -42,8 +42,9 @@ void check(const Material& material, Shape shape, Plane plane);
 
 /// The kernel of the elements of a material and its arrays, all at their start.
 /// @param lengths  [batches][batch_size] characteristic length of each element, m
+/// @param stored   keep the stress even if the law could do without, for a body under stress
 GroupKernel make_group(const Material& material, Shape shape, Plane plane,
-                       std::span<const double> lengths);
+                       std::span<const double> lengths, bool stored);
 
 /// Names and units of the history that the law keeps at a point.
 struct HistoryValue {

@@ -1,6 +1,7 @@
 // What can be set of a finite element body besides its mesh.
 #pragma once
 
+#include "common/time_table.hpp"
 #include "common/vec.hpp"
 #include "fem_core/material.hpp"
 
@@ -13,9 +14,12 @@ namespace kerf::fem {
 
 /// How a prescribed displacement goes on in time; t = 0 is the start of the run.
 enum class Motion {
-  fixed,    // 0
-  velocity, // velocity * t
-  hann,     // amplitude (1 - cos(2 pi t / duration)) / 2 for 0 <= t <= duration, else 0
+  fixed,              // 0
+  symmetry,           // 0 along the normal of the faces, which are in one plane across an axis
+  velocity,           // velocity * t
+  hann,               // amplitude (1 - cos(2 pi t / duration)) / 2 for 0 <= t <= duration, else 0
+  displacement_table, // table, m
+  velocity_table,     // table, m/s
 };
 
 /// Motion that is prescribed for some nodes, selected either by a tag or by a box.
@@ -27,6 +31,45 @@ template <int dim> struct BoundarySetting {
   Vec<dim> velocity = Vec<dim>::Zero();  // m/s
   Vec<dim> amplitude = Vec<dim>::Zero(); // m
   double duration = 0.0;                 // s
+  std::array<TimeTable, dim> table{};
+};
+
+/// What pushes a body.
+enum class LoadKind {
+  force,    // N in all, spread over faces by their area, or evenly over the nodes of other tags
+  traction, // Pa of the reference area
+  pressure, // Pa on the deformed faces, against their outward normal; value[0]
+};
+
+/// Forces on nodes, selected by a tag of faces or nodes, or by a box (force only).
+template <int dim> struct LoadSetting {
+  std::string tag; // empty: by the box
+  std::optional<Box<dim>> box{};
+  LoadKind kind = LoadKind::force;
+  std::array<TimeTable, dim> value{};
+};
+
+/// A plane wave that comes in through an absorbing boundary.
+template <int dim> struct IncomingWave {
+  Vec<dim> direction = Vec<dim>::Zero();    // of travel
+  Vec<dim> polarization = Vec<dim>::Zero(); // along the direction: P, across it: S
+  Vec<dim> origin = Vec<dim>::Zero();       // where the table counts its time, m
+  TimeTable velocity{};                     // of the particles, m/s
+};
+
+/// Faces that let waves out.
+template <int dim> struct AbsorbingSetting {
+  std::string tag;
+  std::optional<IncomingWave<dim>> wave{};
+};
+
+/// A rigid plane that nodes do not pass; it may move along its normal.
+template <int dim> struct WallSetting {
+  std::string tag;                    // of the nodes that are held back
+  Vec<dim> point = Vec<dim>::Zero();  // of the plane at the start, m
+  Vec<dim> normal = Vec<dim>::Zero(); // towards the body
+  TimeTable velocity{};               // along the normal, m/s
+  double friction = 0.0;
 };
 
 /// Velocity that the nodes start with.
@@ -63,11 +106,25 @@ template <int dim> struct MaterialSetting {
   std::optional<Box<dim>> box{};
 };
 
+/// Stress that a body begins with, in equilibrium with what holds it and with its weight: the same
+/// everywhere, or growing with the depth.
+template <int dim> struct InSituStress {
+  Symmetric<double, dim> stress{}; // Pa, tension positive; without K0
+  /// Horizontal over vertical stress, which is -(overburden + rho g depth) along gravity.
+  std::optional<double> K0{};
+  double surface = 0.0;    // height against gravity where the depth is zero, m
+  double overburden = 0.0; // Pa, on the surface
+};
+
 template <int dim> struct Settings {
   std::vector<MaterialSetting<dim>> materials;
   Plane plane = Plane::strain; // of 2D
   std::vector<BoundarySetting<dim>> boundary{};
   std::vector<InitialSetting<dim>> initial{};
+  std::vector<LoadSetting<dim>> loads{};
+  std::vector<AbsorbingSetting<dim>> absorbing{};
+  std::vector<WallSetting<dim>> walls{};
+  std::optional<InSituStress<dim>> in_situ_stress{};
   Vec<dim> gravity = Vec<dim>::Zero(); // m/s²
   double mass_damping = 0.0;           // a of the force -a m v, 1/s
   double local_damping = 0.0;          // share of the resultant that opposes the motion, 0 to 1

@@ -19,25 +19,29 @@ struct StateParts {
 
   /// Forces are computed anew in every step, and what was before t_n is overwritten.
   template <int dim, class Visit> static void of(Engine<dim>& engine, Visit& visit) {
-    auto& [mesh, settings, boundary, material_of, alpha, active, patches, groups, group_of, place,
-           reference, mass, moved, time_step, step, displacement, velocity, initial_displacement,
-           force, parts, forces_are_current, interface_rows, interface_force, element_work,
-           patch_sums, sums, damped_work, reaction_work, gravity_work, interface_work] = engine;
+    auto& [mesh, settings, boundary, loads, absorbing, walls, material_of, alpha, removed, active,
+           patches, groups, group_of, place, reference, mass, moved, time_step, step, changed_at,
+           displacement, velocity, initial_displacement, origin, support, force, parts,
+           forces_are_current, interface_rows, interface_force, element_work, patch_sums, sums,
+           load_force, reactions, wall_forces, damped_work, external_work, interface_work] = engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);
     visit("velocity", velocity);
+    visit("changed_at", changed_at);
     visit("initial_displacement", initial_displacement);
+    visit("origin", origin);
+    visit("support", support);
     visit("groups", groups);
     visit("element_work", element_work);
     visit("damped_work", damped_work);
-    visit("reaction_work", reaction_work);
-    visit("gravity_work", gravity_work);
+    visit("external_work", external_work);
     visit("interface_work", interface_work);
   }
   template <class Visit> static void of(GroupKernel& group, Visit& visit) {
     auto& [compute, kinematics, increments, points, law, parameters, moduli, constants, alpha,
-           length, dilatation, stress, history, hourglass, initial_history] = group;
+           length, compute_dilatation, dilatation, stress, history, hourglass, initial_history] =
+        group;
     visit("stress", stress);
     visit("history", history);
     visit("hourglass", hourglass);

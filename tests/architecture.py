@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 VIEWS = {"common/" + name for name in ("instruction_set.hpp", "lanes.hpp", "ordered_sum.hpp", "state.hpp",
                                        "vec.hpp")}
 GEOMETRY = {"common/" + name for name in ("facet_contact.hpp", "facet_grid.hpp", "spatial_order.hpp", "surface.hpp",
-                                         "surface_topology.hpp")}
+                                         "surface_topology.hpp", "time_table.hpp")}
 ALLOWED = {
     "common": set(),
     "dem_core": VIEWS | GEOMETRY,

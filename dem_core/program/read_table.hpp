@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dem_core/program/settings_node.hpp"
-#include "dem_core/time_table.hpp"
+#include "common/time_table.hpp"
 
 #include <array>
 #include <stdexcept>

@@ -39,6 +39,7 @@ template <int dim> struct Deformation {
   Matrix<dim> gradient; // times factor
   Lanes factor;
   Tensor<dim> strain; // the symmetric part; zz of 2D is the hoop, or zero
+  Lanes own_trace;    // that of strain, before a formulation has averaged it
 };
 
 /// Where and with which weight a stress acts.
@@ -128,6 +129,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
       f.volume *= whole_ring * of_strain;
       f.end *= whole_ring * radius;
     }
+    d.own_trace = trace(d.strain);
   }
 
   KERF_INLINE void add(int q, const PointForce<dim>& f, const Tensor<dim>& stress) {

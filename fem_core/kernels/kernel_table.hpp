@@ -15,7 +15,11 @@ template <Shape shape, Kinematics kinematics, Space space, class Respond>
 PatchKernel kernel_of_formulation(Formulation formulation) {
   if (formulation == Formulation::full)
     return full_kernel<shape, kinematics, space, Respond>;
-  if constexpr (shape == Shape::quad4 || shape == Shape::hex8) {
+  if constexpr (shape == Shape::tri3 || shape == Shape::tet4) {
+    if constexpr (kinematics != Kinematics::total)
+      if (formulation == Formulation::nodal_pressure)
+        return nodal_pressure_kernel<shape, kinematics, space, Respond>;
+  } else {
     if constexpr (kinematics != Kinematics::total)
       if (formulation == Formulation::mean_dilatation)
         return mean_dilatation_kernel<shape, kinematics, space, Respond>;
@@ -29,6 +33,11 @@ PatchKernel kernel_of_formulation(Formulation formulation) {
 template <Shape shape, Space space> PatchKernel kernel_of_space(const KernelKey& key) {
   using fem::Response;
   const Formulation formulation = key.formulation;
+  if constexpr (shape == Shape::tri3 || shape == Shape::tet4)
+    if (key.response == Response::none)
+      return key.kinematics == Kinematics::rate
+                 ? dilatation_kernel<shape, Kinematics::rate, space>
+                 : dilatation_kernel<shape, Kinematics::small, space>;
   switch (key.kinematics) {
   case Kinematics::rate:
     return kernel_of_formulation<shape, Kinematics::rate, space, CalledResponse<Kinematics::rate>>(

@@ -1,6 +1,7 @@
 // The kernels of one shape.
 #pragma once
 
+#include "fem_core/kernels/nodal_pressure.hpp"
 #include "fem_core/kernels/one_point.hpp"
 
 namespace kerf::KERF_ISA {
@@ -50,6 +51,7 @@ void mean_dilatation_kernel(PatchView& patch) {
           const Lanes missing = (1.0 / 3.0) * (dilatation - trace(d[q].strain));
           for (int k = 0; k < 3; ++k)
             d[q].strain[k] += missing;
+          d[q].own_trace = dilatation; // the mean pressure below works on the mean
           stress[q] = Response::stress(e, q, d[q], f[q], work);
           end += f[q].end;
           pressure += f[q].end * trace(stress[q]);

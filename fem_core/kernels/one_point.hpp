@@ -187,6 +187,7 @@ void one_point_kernel(PatchView& patch) {
         d.gradient = middle.of(u);
         d.factor = view.motion_scale * inverse_volume;
         d.strain = symmetric(d.gradient, d.factor);
+        d.own_trace = trace(d.strain);
         f.volume = share * middle.volume;
         f.weight = share;
 

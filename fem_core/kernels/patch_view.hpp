@@ -66,7 +66,7 @@ struct PatchView {
   double* force;              // [rows] internal forces are taken off, N
   const double* alpha;        // [batches][points][batch_size] share; null: one everywhere
   const double* length;       // [batches][batch_size] of the elements, for bulk viscosity, m
-  const double* dilatation;   // [batches][batch_size] averaged over nodes, of nodal_pressure
+  const double* dilatation;   // [rows] mean of the elements around each node; of nodal_pressure
   double* stress;             // [batches][points][components][batch_size], Pa; null: not stored
   double* history;            // [batches][points][law.history][batch_size]
   double* hourglass;          // [batches][modes][dim][batch_size] forces of Kinematics::rate, N
@@ -86,6 +86,7 @@ enum class Response : std::uint8_t {
   hyperelastic, // Kinematics::total; parameters are a NeoHookean, or one in plane stress
   hyperelastic_plane_stress,
   called,
+  none, // only the dilatation of the nodes, of nodal_pressure
 };
 
 /// Which kernel.

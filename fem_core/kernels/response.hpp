@@ -111,7 +111,10 @@ template <Kinematics kinematics> struct CalledResponse {
         f.weight *= thickness;
         f.volume *= thickness;
       }
-    work.internal += only(f.volume * contract(mean, d.strain), e.count);
+    // The pressure works on the element's own dilatation; see nodal_pressure.hpp.
+    const Lanes power =
+        contract(mean, d.strain) + (1.0 / 3.0) * trace(mean) * (d.own_trace - trace(d.strain));
+    work.internal += only(f.volume * power, e.count);
     work.dissipated += only(f.volume * point.dissipated, e.count);
     return point.stress;
   }

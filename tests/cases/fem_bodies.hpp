@@ -91,10 +91,15 @@ template <int dim> std::vector<std::uint32_t> all_nodes(const fem::Engine<dim>& 
 }
 
 /// -F^int of all nodes for a displacement field.
+/// @param by_increment  it is that of one step, from rest, for laws that store their stress
 template <int dim>
-std::vector<double> forces(fem::Engine<dim>& engine, const std::vector<double>& displacement) {
+std::vector<double> forces(fem::Engine<dim>& engine, const std::vector<double>& displacement,
+                           bool by_increment = false) {
   engine.start(1.0);
-  engine.set_motion(displacement, std::vector<double>(displacement.size()));
+  if (by_increment)
+    engine.integrate();
+  engine.set_motion(displacement,
+                    by_increment ? displacement : std::vector<double>(displacement.size()));
   engine.compute_own_forces();
   std::vector<double> force(displacement.size());
   engine.own_forces(all_nodes(engine), force);
@@ -102,13 +107,13 @@ std::vector<double> forces(fem::Engine<dim>& engine, const std::vector<double>& 
 }
 
 /// The stiffness matrix of all nodes, column by column from the forces of unit displacements.
-template <int dim> Eigen::MatrixXd stiffness(fem::Engine<dim>& engine) {
+template <int dim> Eigen::MatrixXd stiffness(fem::Engine<dim>& engine, bool by_increment = false) {
   const auto size = static_cast<Eigen::Index>(engine.mesh().num_nodes()) * dim;
   Eigen::MatrixXd K(size, size);
   std::vector<double> u(static_cast<std::size_t>(size), 0.0);
   for (Eigen::Index j = 0; j < size; ++j) {
     u[static_cast<std::size_t>(j)] = 1.0;
-    const std::vector<double> f = forces(engine, u);
+    const std::vector<double> f = forces(engine, u, by_increment);
     K.col(j) = -Eigen::Map<const Eigen::VectorXd>(f.data(), size);
     u[static_cast<std::size_t>(j)] = 0.0;
   }

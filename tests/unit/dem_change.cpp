@@ -200,8 +200,8 @@ TEST(DemChange, of_a_tool_goes_on_from_its_pose) {
   auto settings = two_discs(5e-3);
   dem::ToolMotion<2> motion;
   motion.reference = Vec<2>(0.0, -1e-2);
-  motion.velocity = {dem::TimeTable(1.0), dem::TimeTable(0.0)};
-  motion.rotation_rate = dem::TimeTable(100.0);
+  motion.velocity = {kerf::TimeTable(1.0), kerf::TimeTable(0.0)};
+  motion.rotation_rate = kerf::TimeTable(100.0);
   settings.tools.push_back({"floor",
                             dem::ToolShape<2>(dem::Plane<2>{motion.reference, Vec<2>(0.0, 1.0)}),
                             motion,
@@ -210,8 +210,8 @@ TEST(DemChange, of_a_tool_goes_on_from_its_pose) {
   engine.start(1e-6);
   run(engine, 200);
   dem::Change<2> change;
-  motion.velocity = {dem::TimeTable({0.0, 100e-6}, {0.0, -4.0}), dem::TimeTable(3.0)};
-  motion.rotation_rate = dem::TimeTable(-50.0);
+  motion.velocity = {kerf::TimeTable({0.0, 100e-6}, {0.0, -4.0}), kerf::TimeTable(3.0)};
+  motion.rotation_rate = kerf::TimeTable(-50.0);
   change.tools = {{0, motion}};
   engine.change(change);
   run(engine, 100);

@@ -78,7 +78,7 @@ std::vector<double> run_with(int threads, bool in_one = false) {
   settings.gravity = {0.0, -9.81};
   settings.applied_forces.resize(1);
   settings.applied_forces[0].box = {Vec<2>::Constant(-1.0), Vec<2>::Constant(1.0)};
-  settings.applied_forces[0].force[0] = dem::TimeTable(10.0);
+  settings.applied_forces[0].force[0] = kerf::TimeTable(10.0);
   dem::WallMaterial stiff;
   stiff.normal_stiffness = 1e10;
   settings.tools = {{"floor", dem::ToolShape<2>(dem::Plane<2>{{0.0, 0.0}, {0.0, 1.0}}), {}, stiff}};

@@ -41,7 +41,7 @@ template <int dim> dem::Settings<dim> crushed_block(dem::NormalLaw law = dem::No
   const double rise = (dim == 2 ? std::sqrt(0.75) : 1.0) * cases::spacing; // from row to row
   const Vec<dim> start = ((count[0] - 1) * rise + 0.5 * cases::spacing) * up;
   top.reference = start;
-  top.velocity[dim - 1] = dem::TimeTable(-3.0);
+  top.velocity[dim - 1] = kerf::TimeTable(-3.0);
   settings.tools.push_back({"top", dem::ToolShape<dim>(dem::Plane<dim>{start, -up}), top, wall});
   dem::Prescription<dim> hold;
   hold.box = {Vec<dim>::Constant(-1e-4), Vec<dim>::Constant(1e-4)};

@@ -10,7 +10,7 @@ namespace kerf {
 namespace {
 
 using dem::Plane;
-using dem::TimeTable;
+using kerf::TimeTable;
 using dem::Tool;
 using dem::ToolMotion;
 using dem::ToolShape;

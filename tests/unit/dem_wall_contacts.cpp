@@ -63,7 +63,7 @@ TEST(WallContacts, that_are_seated_are_free_of_stress_at_the_start_and_pull_neve
   auto seated = rough;
   seated.seated = true;
   ToolMotion<2> motion;
-  motion.velocity[1] = dem::TimeTable({0.0, 1e-3, 2e-3}, {10.0, 10.0, -40.0});
+  motion.velocity[1] = kerf::TimeTable({0.0, 1e-3, 2e-3}, {10.0, 10.0, -40.0});
   settings.tools = {plane<2>({0.0, 0.0}, {0.0, 1.0}, seated, motion)};
   settings.boundary = {cases::prescribe_at<2>(settings.positions[0], dem::Motion::fixed)};
   dem::Engine<2> engine(settings);

@@ -1,7 +1,9 @@
 # Tests of the finite element engine and of its participant.
 add_executable(fem_tests
+  ${CMAKE_CURRENT_LIST_DIR}/fem_change.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_elements.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_engine.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/fem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_participant.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/fem_waves.cpp)

@@ -34,7 +34,7 @@ dem::Settings<3> irregular_body() {
   settings.material = rock(3);
   settings.clusters = {of_ids<3>({0, 1, 2, 3, 4})};
   settings.clusters[0].motion.axis = {1.0, 2.0, 0.5};
-  settings.clusters[0].motion.rotation_rate = dem::TimeTable(100.0); // rad/s
+  settings.clusters[0].motion.rotation_rate = kerf::TimeTable(100.0); // rad/s
   return settings;
 }
 
@@ -104,7 +104,7 @@ TEST(Cluster, of_a_symmetric_top_precesses_as_in_closed_form) {
   settings.material = rock(3);
   settings.clusters = {of_ids<3>({0, 1, 2})};
   settings.clusters[0].motion.axis = {1.0, 0.0, 2.0};
-  settings.clusters[0].motion.rotation_rate = dem::TimeTable(50.0);
+  settings.clusters[0].motion.rotation_rate = kerf::TimeTable(50.0);
 
   dem::Engine<3> engine(settings);
   engine.start(1.0);
@@ -168,8 +168,8 @@ TEST(Cluster, falls_with_its_weight_and_turns_on) {
   settings.clusters = {of_ids<2>({0, 1, 2, 3})};
   settings.clusters[0].mass = 12.0;
   settings.clusters[0].inertia = Rot<2>(3e-3);
-  settings.clusters[0].motion.rotation_rate = dem::TimeTable(20.0);
-  settings.clusters[0].motion.velocity[0] = dem::TimeTable(0.1);
+  settings.clusters[0].motion.rotation_rate = kerf::TimeTable(20.0);
+  settings.clusters[0].motion.velocity[0] = kerf::TimeTable(0.1);
   settings.initial = {{.box = {}, .velocity = {0.0, 0.2}, .pulse = {}}};
   dem::Engine<2> engine(settings);
   const double dt = 1e-4, t = 200 * dt;
@@ -207,9 +207,9 @@ template <int dim> dem::Settings<dim> collision(double& duration) {
                         place(4.0, 0.0, 0.2),  place(2.0, 0.2, 0.1)};
   settings.radii.assign(8, 0.5 * spacing);
   settings.clusters = {of_ids<dim>({0, 1, 2, 3}), of_ids<dim>({4, 5, 6})};
-  settings.clusters[0].motion.velocity[0] = dem::TimeTable(2.0);
-  settings.clusters[0].motion.rotation_rate = dem::TimeTable(300.0);
-  settings.clusters[1].motion.velocity[0] = dem::TimeTable(-1.0);
+  settings.clusters[0].motion.velocity[0] = kerf::TimeTable(2.0);
+  settings.clusters[0].motion.rotation_rate = kerf::TimeTable(300.0);
+  settings.clusters[1].motion.velocity[0] = kerf::TimeTable(-1.0);
   duration = 1.0e-3;
   return settings;
 }
@@ -285,7 +285,7 @@ TEST(Cluster, with_members_in_several_blocks_moves_like_one_within_a_block) {
       settings.positions.insert(settings.positions.begin() + places[k], spacing * body[k]);
     settings.radii.assign(settings.positions.size(), 0.5 * spacing);
     settings.clusters = {of_ids<2>({places.begin(), places.end()})};
-    settings.clusters[0].motion.velocity = {dem::TimeTable(1.0), dem::TimeTable(-5.0)};
+    settings.clusters[0].motion.velocity = {kerf::TimeTable(1.0), kerf::TimeTable(-5.0)};
     settings.gap_tolerance = 1e-6;
     dem::Engine<2> engine(settings);
     engine.start(0.2 * 2.0 / std::sqrt(engine.step_limit().omega2));
@@ -404,8 +404,8 @@ TEST(Cluster, moves_as_it_is_told) {
   told.has_reference = true;
   told.motion.reference = {3e-3, -1e-3, 2e-3};
   told.motion.axis = {0.0, 1.0, 1.0};
-  told.motion.rotation_rate = dem::TimeTable({0.0, 1e-2}, {0.0, 200.0});
-  told.motion.velocity[0] = dem::TimeTable({0.0, 1e-2}, {0.3, -0.1});
+  told.motion.rotation_rate = kerf::TimeTable({0.0, 1e-2}, {0.0, 200.0});
+  told.motion.velocity[0] = kerf::TimeTable({0.0, 1e-2}, {0.3, -0.1});
   dem::Engine<3> engine(settings);
   const double dt = 1e-5;
   engine.start(dt);
@@ -429,7 +429,7 @@ TEST(Cluster, that_pulls_a_bond_does_its_elastic_work) {
   settings.boundary = {cases::prescribe_at<2>({3.0 * spacing, 0.0}, dem::Motion::fixed)};
   settings.clusters = {of_ids<2>({0, 1, 2})};
   settings.clusters[0].is_free = false;
-  settings.clusters[0].motion.velocity[0] = dem::TimeTable(-0.02);
+  settings.clusters[0].motion.velocity[0] = kerf::TimeTable(-0.02);
   dem::Engine<2> engine(settings);
   const double dt = 1e-7, k = settings.material.normal_stiffness;
   engine.start(dt);

@@ -10,7 +10,7 @@ namespace {
 using cases::rock;
 using cases::spacing;
 using dem::LatticeType;
-using dem::TimeTable;
+using kerf::TimeTable;
 
 template <int dim> Box<dim> around(const Vec<dim>& x, double reach = 1e-6) {
   return {x - Vec<dim>::Constant(reach), x + Vec<dim>::Constant(reach)};

@@ -1,4 +1,4 @@
-#include "dem_core/time_table.hpp"
+#include "common/time_table.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace kerf::dem {
+namespace kerf {
 
 TimeTable::TimeTable(std::vector<double> times, std::vector<double> values)
     : times_(std::move(times)), values_(std::move(values)) {
@@ -54,4 +54,4 @@ double TimeTable::antiderivative(double t) const {
   return sums_[k] + 0.5 * (values_[k] + value(t)) * (t - times_[k]);
 }
 
-} // namespace kerf::dem
+} // namespace kerf

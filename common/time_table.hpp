@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace kerf::dem {
+namespace kerf {
 
 /// Linear between the times of a table, constant before the first and after the last.
 class TimeTable {
@@ -33,4 +33,4 @@ private:
   double at_zero_ = 0.0;     // antiderivative
 };
 
-} // namespace kerf::dem
+} // namespace kerf
