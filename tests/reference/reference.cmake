@@ -13,3 +13,11 @@ kerf_python_test(reference.yade_column reference/grains.py Grains.test_a_column_
                  reference verification)
 kerf_python_test(reference.yade_tool reference/grains.py
                  Grains.test_a_plate_that_is_dragged_through_a_bed reference verification)
+
+add_executable(fem_run ${CMAKE_CURRENT_LIST_DIR}/fem_run.cpp)
+target_link_libraries(fem_run PRIVATE kerf::fem nlohmann_json::nlohmann_json kerf::warnings)
+add_dependencies(verification fem_run)
+foreach(shape triangles quadrilaterals tetrahedra hexahedra)
+  kerf_python_test(reference.fenicsx_${shape} reference/elements.py
+                   Elements.test_${shape}_move_as_in_fenicsx reference verification)
+endforeach()
