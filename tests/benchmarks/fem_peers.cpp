@@ -79,7 +79,7 @@ double FemPeerModel<dim>::seconds_per_step(const FemPeer& peer, int threads, int
                           folder_.path().string(), peer.name == "petsc" ? "stiffness" : "assembled",
                           peer.law);
   return loop_time(output_of(fmt::format("OMP_NUM_THREADS=1 mpirun --allow-run-as-root "
-                                         "--oversubscribe -np {} {} {} {}",
+                                         "--oversubscribe --bind-to none -np {} {} {} {}",
                                          threads, program, steps, warm_up))) /
          steps;
 }

@@ -14,7 +14,9 @@
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/matrix_free/evaluation_template_face_factory.templates.h>
 #include <deal.II/matrix_free/evaluation_template_factory.templates.h>
+#include <deal.II/matrix_free/evaluation_template_factory_hanging_nodes.templates.h>
 #include <deal.II/matrix_free/fe_evaluation.h>
 #include <deal.II/matrix_free/mapping_info.templates.h>
 #include <deal.II/matrix_free/mapping_info_storage.templates.h>
