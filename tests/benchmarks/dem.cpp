@@ -79,7 +79,7 @@ void run(const Workload& workload, const DemOptions& options, nlohmann::json& fi
   for (const int threads : options.threads) {
     omp_set_num_threads(threads);
     const double steps = renewal_in_steps(settings, time_step);
-    fmt::print("{:<22} {:>7} a renewal of the contact list takes {:.1f} steps\n", workload.name,
+    fmt::print("{:<32} {:>7} a renewal of the contact list takes {:.1f} steps\n", workload.name,
                threads, steps);
     figures["renewal_" + workload.name][std::to_string(threads)]["kerf"] = steps;
   }
@@ -104,7 +104,7 @@ std::vector<Workload> chosen(const std::vector<std::string>& names) {
 nlohmann::json dem(const DemOptions& options) {
   const std::vector<Workload> workloads = chosen(options.workloads);
   fmt::print("{} rounds in turn. 10^6 particle-steps per second without renewal of the list, the "
-             "median (least..most):\n{:<22} {:>7} {:<9} {:>8} {:>28}\n",
+             "median (least..most):\n{:<32} {:>7} {:<9} {:>8} {:>28}\n",
              options.rounds, "workload", "threads", "code", "speed", "kerf / code");
   nlohmann::json figures;
   for (const Workload& workload : workloads)

@@ -178,7 +178,7 @@ FemOptions with_laws(FemOptions options) {
 nlohmann::json fem(const FemOptions& given) {
   const FemOptions options = with_laws(given);
   fmt::print("{} rounds in turn. 10^6 element-steps per second, the median (least..most):\n"
-             "{:<22} {:>7} {:<9} {:>8} {:>28}\n",
+             "{:<32} {:>7} {:<9} {:>8} {:>28}\n",
              options.rounds, "workload", "threads", "code", "speed", "kerf / code");
   nlohmann::json figures;
   for_chosen(options.workloads, [&](const FemWorkload& workload, auto dim) {

@@ -21,7 +21,7 @@ inline void print(const std::string& workload, const Speeds& speeds, nlohmann::j
   for (const auto& [threads, codes] : speeds)
     for (const auto& [code, values] : codes) {
       const auto [least, most] = std::ranges::minmax(values);
-      fmt::print("{:<22} {:>7} {:<9} {:>8.2f} ({:.2f}..{:.2f}) {:>12.2f}\n", workload, threads,
+      fmt::print("{:<32} {:>7} {:<9} {:>8.2f} ({:.2f}..{:.2f}) {:>12.2f}\n", workload, threads,
                  code, median(values), least, most, median(codes.at("kerf")) / median(values));
       figures[workload][std::to_string(threads)][code] = median(values);
     }

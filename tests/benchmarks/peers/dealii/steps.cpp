@@ -14,7 +14,6 @@
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/matrix_free/evaluation_template_face_factory.templates.h>
 #include <deal.II/matrix_free/evaluation_template_factory.templates.h>
 #include <deal.II/matrix_free/evaluation_template_factory_hanging_nodes.templates.h>
 #include <deal.II/matrix_free/fe_evaluation.h>
@@ -27,6 +26,18 @@
 
 #include <fstream>
 #include <iostream>
+
+// MatrixFree names it, but nothing here has faces; deal.II's header for it has the guard of the one
+// for elements.
+namespace dealii::internal {
+template <int dim, typename Number>
+void FEFaceEvaluationFactory<dim, Number>::evaluate(const unsigned int,
+                                                    const EvaluationFlags::EvaluationFlags,
+                                                    const Number*,
+                                                    FEEvaluationData<dim, Number, true>&) {
+  AssertThrow(false, ExcNotImplemented());
+}
+} // namespace dealii::internal
 
 using namespace dealii;
 using Vector_ = LinearAlgebra::distributed::Vector<double>;
