@@ -2,22 +2,19 @@
 
 #include "tests/benchmarks/dem_models.hpp"
 #include "tests/benchmarks/dem_timing.hpp"
+#include "tests/benchmarks/memory.hpp"
 #include "tests/benchmarks/peers.hpp"
-#include "tests/benchmarks/statistics.hpp"
+#include "tests/benchmarks/speeds.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <stdexcept>
 
 namespace kerf::benchmarks {
 namespace {
-
-/// 1e6 particle-steps/s of every round, by threads and code.
-using Speeds = std::map<int, std::map<std::string, std::vector<double>>>;
 
 int steps_of(const DemOptions& options, std::size_t particles) {
   return options.steps > 0 ? options.steps : static_cast<int>(20'000'000 / particles);
@@ -56,16 +53,6 @@ Speeds time_in_turn(const Workload& workload, const DemOptions& options,
   return speeds;
 }
 
-void print(const Workload& workload, const Speeds& speeds, nlohmann::json& figures) {
-  for (const auto& [threads, codes] : speeds)
-    for (const auto& [code, values] : codes) {
-      const auto [least, most] = std::ranges::minmax(values);
-      fmt::print("{:<18} {:>7} {:<9} {:>8.2f} ({:.2f}..{:.2f}) {:>12.2f}\n", workload.name, threads,
-                 code, median(values), least, most, median(codes.at("kerf")) / median(values));
-      figures[workload.name][std::to_string(threads)][code] = median(values);
-    }
-}
-
 template <int dim>
 void run(const Workload& workload, const DemOptions& options, nlohmann::json& figures) {
   omp_set_num_threads(omp_get_num_procs());
@@ -87,12 +74,12 @@ void run(const Workload& workload, const DemOptions& options, nlohmann::json& fi
   std::unique_ptr<Peers<dim>> peers;
   if (options.peers)
     peers = std::make_unique<Peers<dim>>(workload, settings, engine, time_step);
-  print(workload, time_in_turn(workload, options, engine, peers.get()), figures);
+  print(workload.name, time_in_turn(workload, options, engine, peers.get()), figures);
 
   for (const int threads : options.threads) {
     omp_set_num_threads(threads);
     const double steps = renewal_in_steps(settings, time_step);
-    fmt::print("{:<18} {:>7} a renewal of the contact list takes {:.1f} steps\n", workload.name,
+    fmt::print("{:<32} {:>7} a renewal of the contact list takes {:.1f} steps\n", workload.name,
                threads, steps);
     figures["renewal_" + workload.name][std::to_string(threads)]["kerf"] = steps;
   }
@@ -117,7 +104,7 @@ std::vector<Workload> chosen(const std::vector<std::string>& names) {
 nlohmann::json dem(const DemOptions& options) {
   const std::vector<Workload> workloads = chosen(options.workloads);
   fmt::print("{} rounds in turn. 10^6 particle-steps per second without renewal of the list, the "
-             "median (least..most):\n{:<18} {:>7} {:<9} {:>8} {:>28}\n",
+             "median (least..most):\n{:<32} {:>7} {:<9} {:>8} {:>28}\n",
              options.rounds, "workload", "threads", "code", "speed", "kerf / code");
   nlohmann::json figures;
   for (const Workload& workload : workloads)

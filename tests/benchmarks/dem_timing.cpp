@@ -2,12 +2,9 @@
 
 #include "tests/benchmarks/statistics.hpp"
 
-#include <malloc.h>
 #include <omp.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 
 namespace kerf::benchmarks {
@@ -51,13 +48,6 @@ template <int dim> double renewal_in_steps(dem::Settings<dim> settings, double t
     (engine.renewals() > before ? with_renewal : plain).push_back(seconds);
   }
   return (median(with_renewal) - median(plain)) / median(plain);
-}
-
-double resident_memory() {
-  malloc_trim(0);
-  double all = 0.0, resident = 0.0; // pages
-  std::ifstream("/proc/self/statm") >> all >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 template double time_step_of<2>(const dem::Engine<2>&);

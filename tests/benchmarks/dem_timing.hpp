@@ -16,7 +16,4 @@ template <int dim> double seconds_per_step(dem::Engine<dim> engine, int steps);
 /// What a renewal of the contact list takes, in steps: the particles of a model drift all together.
 template <int dim> double renewal_in_steps(dem::Settings<dim> settings, double time_step);
 
-/// Resident memory of this process without what it has set free, byte.
-double resident_memory();
-
 } // namespace kerf::benchmarks

@@ -7,8 +7,14 @@
 
 namespace kerf::benchmarks {
 
+/// Of a triad, a = b + s c, over arrays of together so many bytes, the best of five, 1e9 byte/s.
+double bandwidth(double bytes);
+
+/// Of double precision, in registers, all threads at once, the best of five, 1e9 operations/s.
+double multiply_adds();
+
 /// Prints the processor, its load and the set of instructions in use; measures the memory bandwidth
-/// (triad of 600 MB) and the rate of double multiply-adds, the best of five each.
+/// (600 MB) and the rate of multiply-adds.
 /// @return {"triad": {threads: {"limit": GB/s}}, "fma": {threads: {"limit": GFLOP/s}}}
 nlohmann::json machine(std::span<const int> threads);
 

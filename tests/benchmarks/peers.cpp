@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <numbers>
 #include <stdexcept>
@@ -27,26 +24,6 @@ struct Code {
 constexpr Code all_codes[] = {{"lammps", "lmp", true, 1'000'000},
                               {"liggghts", "liggghts", false, 1'000'000},
                               {"yade", "yade", true, 100'000}};
-
-bool is_installed(const std::string& program) {
-  return std::system(fmt::format("command -v {} > /dev/null", program).c_str()) == 0;
-}
-
-/// What a command prints. @throws std::runtime_error with the end of it when the command fails
-std::string output_of(const std::string& command) {
-  std::string output;
-  std::FILE* pipe = popen((command + " 2>&1 < /dev/null").c_str(), "r");
-  if (pipe == nullptr)
-    throw std::runtime_error(fmt::format("cannot start {}", command));
-  char piece[4096];
-  while (const std::size_t size = std::fread(piece, 1, sizeof piece, pipe))
-    output.append(piece, size);
-  if (pclose(pipe) != 0)
-    throw std::runtime_error(
-        fmt::format("{} failed:\n{}", command,
-                    output.substr(output.size() - std::min<std::size_t>(output.size(), 2000))));
-  return output;
-}
 
 /// LAMMPS knows spheres only: a disc is a sphere of the same mass, per metre of thickness.
 template <int dim> double sphere_density(double density, double radius) {
@@ -85,23 +62,14 @@ Peers<dim>::Peers(const Workload& workload, const dem::Settings<dim>& settings,
                                            code.program));
     codes_.push_back(code.name);
   }
-  std::string name = std::filesystem::temp_directory_path() / "kerf-bench-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr)
-    throw std::runtime_error(fmt::format("cannot make the folder {}", name));
-  folder_ = name;
   const double largest = *std::ranges::max_element(settings.radii); // m
-  variables_ = fmt::format(" -var data {}/particles.data -var dimension {} -var "
-                           "time_step {} -var kn {} -var kt {} -var friction {} -var reach {}",
-                           folder_.string(), dim, time_step, settings.material.normal_stiffness,
-                           settings.material.tangential_stiffness, settings.material.friction,
-                           2.0 * largest);
+  variables_ = fmt::format(
+      " -var data {}/particles.data -var dimension {} -var "
+      "time_step {} -var kn {} -var kt {} -var friction {} -var reach {}",
+      folder_.path().string(), dim, time_step, settings.material.normal_stiffness,
+      settings.material.tangential_stiffness, settings.material.friction, 2.0 * largest);
   write_yade_model(settings, engine, time_step);
   write_lammps_data(settings, engine, workload.bonded);
-}
-
-template <int dim> Peers<dim>::~Peers() {
-  std::error_code ignored; // a folder in /tmp that stays is no harm
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 template <int dim>
@@ -128,7 +96,7 @@ void Peers<dim>::write_yade_model(const dem::Settings<dim>& settings,
   model["radius"] = particles.radius;
   model["mass"] = particles.mass;
   model["inertia"] = particles.inertia;
-  std::ofstream(folder_ / "model.json") << model;
+  std::ofstream(folder_.path() / "model.json") << model;
 }
 
 template <int dim>
@@ -139,7 +107,7 @@ void Peers<dim>::write_lammps_data(const dem::Settings<dim>& settings,
   const double largest = 2.0 * (1.0 + settings.gap_tolerance) *
                          *std::ranges::max_element(settings.radii); // bond length, m
   const Box<3> box = box_of<dim>(workload_);
-  fmt::ostream file = fmt::output_file((folder_ / "particles.data").string());
+  fmt::ostream file = fmt::output_file((folder_.path() / "particles.data").string());
   file.print("kerf bench dem {}\n\n{} atoms\n1 atom types\n", workload_.name, engine.size());
   if (with_bonds)
     file.print("{} bonds\n{} bond types\n", engine.bonds(), length_classes);
@@ -182,20 +150,15 @@ double Peers<dim>::seconds_per_step(const std::string& code, int threads, int st
   std::string command;
   if (code == "yade")
     command = fmt::format("yade -n -x -j{} {}/yade_steps.py {}/model.json {}", threads,
-                          KERF_PEERS_FOLDER, folder_.string(), steps);
+                          KERF_PEERS_FOLDER, folder_.path().string(), steps);
   else
     command = fmt::format("mpirun --allow-run-as-root --oversubscribe -np {} {} -in "
                           "{}/{}.{} -log none {} -var steps {} -var warm_up {}",
                           threads, code == "lammps" ? "lmp" : "liggghts", KERF_PEERS_FOLDER,
                           workload_.bonded ? "bonded" : "friction", code, variables_, steps,
                           steps / 10 + 5);
-  const std::string output = output_of("cd " + folder_.string() + " && " + command);
   // "Loop time of 1.234 on 2 procs for 100 steps with 50000 atoms"; the last one is timed.
-  static constexpr std::string_view words = "Loop time of ";
-  const auto at = output.rfind(words);
-  if (at == std::string::npos)
-    throw std::runtime_error(fmt::format("{} did not say its time:\n{}", command, output));
-  return std::strtod(output.c_str() + at + words.size(), nullptr) / steps;
+  return loop_time(output_of("cd " + folder_.path().string() + " && " + command)) / steps;
 }
 
 template class Peers<2>;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "dem_core/engine.hpp"
+#include "tests/benchmarks/commands.hpp"
 #include "tests/benchmarks/dem_models.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,9 +19,6 @@ public:
   /// @throws std::runtime_error when a code that can run the workload is not installed
   Peers(const Workload& workload, const dem::Settings<dim>& settings,
         const dem::Engine<dim>& engine, double time_step);
-  ~Peers();
-  Peers(const Peers&) = delete;
-  Peers& operator=(const Peers&) = delete;
 
   /// The codes that can run the workload.
   const std::vector<std::string>& codes() const noexcept { return codes_; }
@@ -38,7 +35,7 @@ private:
 
   Workload workload_;
   std::vector<std::string> codes_;
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   std::string variables_; // of the LAMMPS and LIGGGHTS scripts
 };
 
