@@ -1,3 +1,14 @@
+# Which set this machine runs.
+set(KERF_BEST_SET baseline)
+if(EXISTS /proc/cpuinfo)
+  file(STRINGS /proc/cpuinfo flags REGEX "^flags" LIMIT_COUNT 1)
+  if(flags MATCHES " avx512vl")
+    set(KERF_BEST_SET avx512)
+  elseif(flags MATCHES " avx2")
+    set(KERF_BEST_SET avx2)
+  endif()
+endif()
+
 # kerf_add_kernels(TARGET FILES…) - compiles hot kernels once for every set of instructions, each in
 # the namespace kerf::<set>; common/instruction_set.hpp tells at run time which one to call.
 function(kerf_add_kernels target)
@@ -13,6 +24,9 @@ function(kerf_add_kernels target)
     # -Wno-psabi: vectors as parameters of functions that are always inlined.
     target_compile_options(${target}_${set} PRIVATE ${flags_${set}} -fno-tree-vectorize -fno-math-errno -fno-trapping-math
                                                         -Wno-psabi)
+    if(KERF_SANITIZE AND NOT set STREQUAL KERF_BEST_SET)
+      target_compile_options(${target}_${set} PRIVATE -fno-sanitize=all) # it does not run here
+    endif()
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${set}>)
   endforeach()
 endfunction()

@@ -9,4 +9,4 @@ add_executable(fem_verification_tests
 target_link_libraries(fem_verification_tests PRIVATE kerf::fem kerf::warnings GTest::gtest_main)
 kerf_verification(fem_verification_tests)
 gtest_discover_tests(fem_verification_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive
-                                                       ${KERF_VERIFIES})
+                                                       ${KERF_VERIFIES} LABELS verification)
