@@ -8,5 +8,5 @@ add_executable(fem_verification_tests
   ${CMAKE_CURRENT_LIST_DIR}/fem_wave_speeds.cpp)
 target_link_libraries(fem_verification_tests PRIVATE kerf::fem kerf::warnings GTest::gtest_main)
 kerf_verification(fem_verification_tests)
-gtest_discover_tests(fem_verification_tests PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive
-                                                       ${KERF_VERIFIES} LABELS verification)
+gtest_discover_tests(fem_verification_tests TEST_PREFIX fem_verification.
+  PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${KERF_VERIFIES})
