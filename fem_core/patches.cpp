@@ -24,7 +24,6 @@ constexpr std::size_t patch_size(Shape shape) {
   case Shape::tet4:
     return 4096;
   case Shape::quad4:
-    return 1024;
   case Shape::tri3:
     break;
   }
