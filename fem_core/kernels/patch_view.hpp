@@ -56,6 +56,12 @@ struct ElementWork {
   double viscous; // of bulk viscosity
 };
 
+/// Memory that the next patch will need.
+struct Ahead {
+  const void* begin = nullptr;
+  std::size_t bytes = 0;
+};
+
 /// One patch. Rows are those of the patch's own nodes, see Patches.
 struct PatchView {
   std::size_t num_elements;
@@ -75,6 +81,7 @@ struct PatchView {
   PointLaw law;
   Moduli moduli; // of linear elasticity in small strain
   ElementConstants constants;
+  Ahead ahead[3];   // is fetched from memory on the way
   ElementWork work; // is added to
 };
 
