@@ -13,6 +13,7 @@ namespace kerf::fem {
 template <int dim> struct Change {
   std::optional<Vec<dim>> gravity{}; // m/s²
   std::optional<double> mass_damping{}, local_damping{};
+  std::optional<bool> kinetic_damping{};
   std::optional<std::vector<BoundarySetting<dim>>> boundary{}; // in place of all there were
   std::optional<std::vector<LoadSetting<dim>>> loads{};        // likewise
   std::vector<std::string> remove{}; // regions whose elements are taken out

@@ -205,6 +205,16 @@ ElementMatrix<dim> stiffness_of(const Element<dim>& element, Formulation formula
   return K;
 }
 
+template <int dim> double hourglass_wave_number2(const Element<dim>& element) {
+  Corners<dim> mean = Corners<dim>::Zero(dim, element.corners.cols());
+  double volume = 0.0;
+  for (const ElementPoint<dim>& point : points_of(element)) {
+    mean += point.volume * point.gradient;
+    volume += point.volume;
+  }
+  return static_cast<double>(mean.cols()) * mean.squaredNorm() / (3.0 * dim * volume * volume);
+}
+
 template CornerValues shape_functions<2>(Shape, const Vec<2>&);
 template CornerValues shape_functions<3>(Shape, const Vec<3>&);
 template Corners<2> shape_derivatives<2>(Shape, const Vec<2>&);
@@ -219,5 +229,8 @@ template std::vector<StrainMatrix<3>> strain_matrices(const std::vector<ElementP
                                                       Formulation);
 template ElementMatrix<2> stiffness_of(const Element<2>&, Formulation, const Moduli&, double);
 template ElementMatrix<3> stiffness_of(const Element<3>&, Formulation, const Moduli&, double);
+
+template double hourglass_wave_number2(const Element<2>&);
+template double hourglass_wave_number2(const Element<3>&);
 
 } // namespace kerf::fem

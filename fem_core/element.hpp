@@ -68,4 +68,9 @@ template <int dim>
 ElementMatrix<dim> stiffness_of(const Element<dim>& element, Formulation formulation,
                                 const Moduli& moduli, double hourglass = 0.0);
 
+/// n b.b / (3 dim) with the mean gradient b of an element with n nodes, 1/m²: a hourglass mode of a
+/// parallelepiped that is controlled with the stiffness of the P wave has the frequency of this
+/// wave number.
+template <int dim> double hourglass_wave_number2(const Element<dim>& element);
+
 } // namespace kerf::fem

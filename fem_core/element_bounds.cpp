@@ -15,7 +15,8 @@ template <int dim> bool alike(const ElementModel<dim>& a, const ElementModel<dim
   const Element<dim>&x = a.element, &y = b.element;
   if (x.shape != y.shape || x.space == Space::axisymmetric || a.formulation != b.formulation ||
       a.moduli.lambda != b.moduli.lambda || a.moduli.mu != b.moduli.mu ||
-      a.hourglass != b.hourglass || a.density != b.density)
+      a.hourglass != b.hourglass || a.hourglass_viscosity != b.hourglass_viscosity ||
+      a.density != b.density)
     return false;
   const Corners<dim> of_x = x.corners.colwise() - x.corners.col(0);
   const Corners<dim> of_y = y.corners.colwise() - y.corners.col(0);
@@ -25,17 +26,40 @@ template <int dim> bool alike(const ElementModel<dim>& a, const ElementModel<dim
          (x.alpha.size() == 0 || (x.alpha - y.alpha).cwiseAbs().maxCoeff() <= rounding);
 }
 
-} // namespace
-
-template <int dim> double omega2_of(const ElementModel<dim>& model) {
-  ElementMatrix<dim> A =
-      stiffness_of(model.element, model.formulation, model.moduli, model.hourglass);
+/// Largest eigenvalue with some stiffness of the hourglass control.
+template <int dim> double largest_eigenvalue(const ElementModel<dim>& model, double hourglass) {
+  ElementMatrix<dim> A = stiffness_of(model.element, model.formulation, model.moduli, hourglass);
   const CornerValues mass = lumped_mass(model.element, model.density);
   for (Eigen::Index i = 0; i < A.rows(); ++i)
     for (Eigen::Index j = 0; j < A.cols(); ++j)
       A(i, j) /= std::sqrt(mass[i / dim] * mass[j / dim]);
   return Eigen::SelfAdjointEigenSolver<ElementMatrix<dim>>(A, Eigen::EigenvaluesOnly)
       .eigenvalues()[A.rows() - 1];
+}
+
+/// Viscosity zeta rho c_P acts on hourglass modes as stiffness would of this modulus times
+/// omega = 2 / dt, Pa s.
+template <int dim> double viscous_modulus(const ElementModel<dim>& model) {
+  return model.hourglass_viscosity / std::sqrt(hourglass_wave_number2(model.element));
+}
+
+} // namespace
+
+// With velocities of half a step ago central differences need 4 M >= dt² K + 2 dt C. C is the
+// stiffness of the control with another modulus, so omega² = eig(k + c omega), which grows with
+// omega: from a number above it the iteration never falls below it.
+template <int dim> double omega2_of(const ElementModel<dim>& model) {
+  const double stiff = largest_eigenvalue(model, model.hourglass);
+  if (model.hourglass_viscosity == 0.0 || model.formulation != Formulation::one_point)
+    return stiff;
+  const double c = viscous_modulus(model);
+  ElementModel<dim> control = model;
+  control.moduli = {};
+  const double p = 0.5 * largest_eigenvalue(control, c); // omega² <= stiff + 2 p omega
+  double omega = p + std::sqrt(p * p + stiff);
+  for (int i = 0; i < 3; ++i)
+    omega = std::sqrt(largest_eigenvalue(model, model.hourglass + c * omega));
+  return omega * omega;
 }
 
 template <int dim> double cheap_omega2_of(const ElementModel<dim>& model) {
@@ -65,8 +89,13 @@ template <int dim> double cheap_omega2_of(const ElementModel<dim>& model) {
     const auto centred =
         (model.element.corners.colwise() - model.element.corners.rowwise().mean()).eval();
     const double gamma = std::sqrt(nodes) * (1.0 + std::sqrt(square / volume) * centred.norm());
-    stiffness +=
-        model.hourglass * square / (3.0 * dim * nodes) * gamma * gamma * (dim == 2 ? 1.0 : 4.0);
+    const double control =
+        square / (3.0 * dim * nodes) * gamma * gamma * (dim == 2 ? 1.0 : 4.0) / mass.minCoeff();
+    const double stiff = stiffness / mass.minCoeff() + model.hourglass * control;
+    if (model.hourglass_viscosity == 0.0)
+      return stiff;
+    const double p = 0.5 * control * viscous_modulus(model), omega = p + std::sqrt(p * p + stiff);
+    return omega * omega;
   }
   return stiffness / mass.minCoeff();
 }

@@ -22,10 +22,12 @@ template <int dim> struct ElementModel {
   Formulation formulation = Formulation::full;
   Moduli moduli; // of a solid that is at least as stiff, Pa
   double hourglass = 0.0;
-  double density = 0.0; // kg/m³
+  double hourglass_viscosity = 0.0; // zeta rho c_P, Pa s/m
+  double density = 0.0;             // kg/m³
 };
 
-/// Largest eigenvalue of an element's own (K_e, M_e), both blended, rad²/s².
+/// Largest eigenvalue of an element's own (K_e, M_e), both blended, rad²/s². Hourglass viscosity C
+/// counts as the stiffness 2 C / dt at the critical step dt, which is what it takes from the step.
 template <int dim> double omega2_of(const ElementModel<dim>& model);
 
 /// A number that is never smaller, and cheap: with H the displacement gradient at a point,

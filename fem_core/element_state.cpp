@@ -3,6 +3,7 @@
 
 #include "fem_core/laws/plane_stress.hpp"
 
+#include <cmath>
 #include <type_traits>
 
 namespace kerf::fem {
@@ -94,6 +95,14 @@ template <int dim> ElementState<dim> Engine<dim>::element_state(std::uint32_t el
     state.energy = volume *
                    ((1.0 + nu) * contract(state.stress, state.stress) - nu * pressure * pressure) /
                    (2.0 * young);
+    if (group.kinematics == Kinematics::rate) { // stored is Kirchhoff's
+      ElementModel<dim> deformed = deformed_model_of(element);
+      double J = model.density / deformed.density;
+      if (settings_.plane == Plane::stress) // the strain through the thickness comes last
+        J *= std::exp(state.history.back());
+      for (int k = 0; k < state.stress.size; ++k)
+        state.stress[k] /= J;
+    }
     return state;
   }
   Corners<dim> u(dim, model.element.corners.cols());

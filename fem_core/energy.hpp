@@ -21,6 +21,11 @@ struct Energies {
   }
 };
 
+/// Kinetic over elastic energy; zero where nothing is stored.
+inline double kinetic_ratio(const Energies& energies) {
+  return energies.elastic > 0.0 ? energies.kinetic / energies.elastic : 0.0;
+}
+
 /// Work of the forces f_n of one step, f_n . v dt/2: with the velocity before t_n, and with the one
 /// after it. Together they are the trapezoidal rule.
 struct Work {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace kerf::fem {
@@ -29,6 +30,7 @@ Engine<dim>::Engine(Mesh<dim> mesh, Settings<dim> settings)
     const Material& material = settings_.materials[material_of_[e]].material;
     return Medium{.moduli = material.bound(), .density = material.density()};
   });
+  scale_mass();
   set_weights({});
 }
 
@@ -78,6 +80,8 @@ template <int dim> void Engine<dim>::set_weights(std::span<const double> alpha) 
     if (!(alpha[a] >= 0.0 && alpha[a] <= 1.0))
       throw std::invalid_argument(
           fmt::format("the weight of node {} is {}; it must be from 0 to 1", a, alpha[a]));
+  if (!alpha.empty() && settings_.mass_scaling)
+    throw std::invalid_argument("the mass of a coupled body cannot be scaled");
   alpha_.assign(alpha.begin(), alpha.end());
   find_active();
   make_groups();
@@ -97,6 +101,7 @@ template <int dim> void Engine<dim>::find_active() {
 
 template <int dim> void Engine<dim>::make_masses() {
   mass_.assign(patches_.num_rows(), 0.0);
+  true_mass_.assign(settings_.mass_scaling ? mass_.size() : 0, 0.0);
   for (const std::uint32_t e : active_) {
     const ElementModel<dim> model = model_of(e);
     CornerValues of_element;
@@ -106,9 +111,16 @@ template <int dim> void Engine<dim>::make_masses() {
       throw std::invalid_argument(fmt::format("{}: {}", name_of(e), error.what()));
     }
     const auto nodes = mesh_.nodes_of_element(e);
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      mass_[patches_.row_of_node[nodes[a]]] += of_element[static_cast<Eigen::Index>(a)];
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const std::uint32_t row = patches_.row_of_node[nodes[a]];
+      const double m = of_element[static_cast<Eigen::Index>(a)];
+      mass_[row] += density_factor_[e] * m;
+      if (!true_mass_.empty())
+        true_mass_[row] += m;
+    }
   }
+  const auto& weighed = true_mass_.empty() ? mass_ : true_mass_;
+  weighed2_ = std::inner_product(weighed.begin(), weighed.end(), weighed.begin(), 0.0);
   moved_.clear();
   scratch_.clear();
   prescribed_ = Rows<dim>(patches_.num_special);
@@ -173,10 +185,19 @@ template <int dim> void Engine<dim>::make_groups() {
           fmt::format("materials[{}]{}", material[g], error.key().substr(error.key().find('.'))),
           error.what());
     }
-    if (alpha_.empty())
-      continue;
     GroupKernel& group = groups_.back();
     const auto points = static_cast<std::size_t>(group.points);
+    if (group.kinematics == Kinematics::rate) {
+      group.volume.resize(elements.size() * points);
+      for (std::size_t k = 0; k < elements.size(); ++k) {
+        const auto of_element = points_of(model_of(elements[k]).element);
+        for (std::size_t q = 0; q < of_element.size(); ++q) // that of all in one point
+          group.volume[(k / batch_size * points + std::min(q, points - 1)) * batch_size +
+                       k % batch_size] += of_element[q].volume;
+      }
+    }
+    if (alpha_.empty())
+      continue;
     group.alpha.resize(elements.size() * points);
     for (std::size_t k = 0; k < elements.size(); ++k) {
       const Element<dim> blended = model_of(elements[k]).element;
@@ -218,6 +239,9 @@ template <int dim> ElementModel<dim> Engine<dim>::model_of(std::uint32_t element
                           .formulation = material.formulation,
                           .moduli = material.bound(),
                           .hourglass = material.hourglass_stiffness * material.bound().uniaxial(),
+                          .hourglass_viscosity =
+                              material.hourglass_viscosity *
+                              std::sqrt(material.density() * material.bound().uniaxial()),
                           .density = material.density()};
   if (!alpha_.empty()) {
     const auto nodes = mesh_.nodes_of_element(element);
@@ -263,6 +287,7 @@ template <int dim> StepLimit Engine<dim>::step_limit() const {
     throw std::runtime_error(fmt::format("{} has turned inside out", name_of(*inverted)));
   const LargestOmega2 largest = largest_omega2<dim>(active_.size(), [this](std::size_t k) {
     ElementModel<dim> model = deformed_model_of(active_[k]);
+    model.density *= density_factor_[active_[k]];
     const Material& material = settings_.materials[material_of_[active_[k]]].material;
     const double factor = material.step_factor();
     model.moduli.lambda /= factor * factor; // which scales the frequencies
@@ -317,7 +342,9 @@ void Engine<dim>::omega2(std::span<const std::uint32_t> nodes, std::span<double>
     if (std::none_of(corners.begin(), corners.end(),
                      [&](std::uint32_t a) { return of_node[a] >= 0.0; }))
       continue;
-    const double bound = omega2_of(model_of(e));
+    ElementModel<dim> model = model_of(e);
+    model.density *= density_factor_[e];
+    const double bound = omega2_of(model);
     for (const std::uint32_t a : corners)
       if (of_node[a] >= 0.0)
         of_node[a] = std::max(of_node[a], bound);
@@ -348,6 +375,8 @@ template <int dim> void Engine<dim>::start(double time_step) {
   interface_force_ = {};
   element_work_ = {};
   sums_ = {};
+  unbalanced_force_ = 0.0;
+  peak_ = {};
   load_force_.assign(loads_.nodes().size() * dim, 0.0);
   reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
   wall_forces_.assign(walls_.size(), Vec<dim>::Zero());

@@ -29,6 +29,14 @@ template <int dim> struct ElementState {
   std::vector<double> history;     // as history_of() names it
 };
 
+/// What mass scaling has added.
+struct AddedMass {
+  double added = 0.0, before = 0.0; // kg
+  std::size_t elements = 0;         // heavier than they were
+  double largest_factor = 1.0;
+  std::uint32_t largest_element = 0; // that has it
+};
+
 /// An explicit finite element body with lumped mass. Points are its nodes; arrays of vectors are
 /// [n][dim]. Nodes without mass are inert: they keep their place. The results have the same bits
 /// for any number of threads.
@@ -40,11 +48,13 @@ template <int dim> struct ElementState {
 /// With couplings a step is compute_own_forces(), add_interface_forces(), integrate().
 template <int dim> class Engine {
 public:
-  /// @throws InputError, std::invalid_argument as its parts do
+  /// @throws InputError, std::invalid_argument as its parts do; also for mass scaling with both a
+  ///         critical step and a factor, or neither
   Engine(Mesh<dim> mesh, Settings<dim> settings);
 
   /// Gives the share of the elements in the blended virtual work; before start().
   /// @param alpha  [num_nodes] from 0 to 1; empty: one everywhere
+  /// @throws std::invalid_argument for another number, and for a body with mass scaling
   void set_weights(std::span<const double> alpha);
 
   /// The bound of the whole body as it has deformed, with what bulk viscosity takes.
@@ -95,10 +105,16 @@ public:
   /// Energies and momentum at the t_n of the last integrate().
   Energies energies() const;
   Vec<dim> momentum() const { return sums_.momentum; }
+  /// Likewise how far the body is from equilibrium: the norm of the resultants on the nodes that
+  /// are free, damping left out, over that of these and the external forces: loads, weight,
+  /// reactions, walls, couplings and what supports absorbing boundaries. From 0 to 1; 0 where there
+  /// are none.
+  double unbalanced_force() const { return unbalanced_force_; }
+  AddedMass added_mass() const;
 
   const Mesh<dim>& mesh() const { return mesh_; }
   const Settings<dim>& settings() const { return settings_; }
-  std::vector<double> mass() const;         // [num_nodes] kg
+  std::vector<double> mass() const;         // [num_nodes] kg, with what scaling has added
   std::vector<double> displacement() const; // [num_nodes][dim] u^n, m
   /// [num_nodes][dim] since the last change that reset it, m
   std::vector<double> displacement_since_reset() const;
@@ -125,6 +141,11 @@ private:
     std::uint32_t node;
   };
 
+  struct Peak {          // of the kinetic energy
+    double energy = 0.0; // largest since the last stop, J
+    bool passed = false; // it has become smaller
+  };
+
   struct Pushed { // by a load, a dashpot or a wall during a step
     std::uint32_t row;
     Vec<dim> before;             // v^(n-1/2), m/s
@@ -136,7 +157,14 @@ private:
   void assign_materials();
   void find_active();
   void make_groups();
+  void scale_mass();
   void make_masses();
+  Vec<dim> weight(std::uint32_t row) const { // N
+    return (true_mass_.empty() ? mass_ : true_mass_)[row] * settings_.gravity;
+  }
+  const double* weighed(std::size_t row) const {
+    return true_mass_.empty() ? nullptr : &true_mass_[row];
+  }
   void set_in_situ_stress();
   void support_absorbing();
   Space space() const {
@@ -156,6 +184,8 @@ private:
   void push(std::uint32_t row, const Vec<dim>& before, const Vec<dim>& after,
             const Vec<dim>& force);
   double span_of_step() const;
+  bool stops() const { return settings_.kinetic_damping && peak_.passed; }
+  void finish_step(double external2);
   bool is_held(std::uint32_t row, int component) const;
   std::vector<double> by_node(const Rows<dim>& rows) const;
 
@@ -166,6 +196,7 @@ private:
   Absorbing<dim> absorbing_;
   RigidWalls<dim> walls_;
   std::vector<std::uint32_t> material_of_; // [num_elements] setting
+  std::vector<double> density_factor_;     // [num_elements] of mass scaling
 
   // With the weights.
   std::vector<double> alpha_; // [num_nodes]; empty: one
@@ -173,10 +204,11 @@ private:
   std::vector<std::uint32_t> active_;
   Patches patches_;
   std::vector<GroupKernel> groups_;
-  std::vector<std::uint32_t> group_of_; // [num_elements]
-  std::vector<std::uint32_t> place_;    // [num_elements] in the arrays of the group
-  Rows<dim> reference_;                 // of the rows of every patch
-  std::vector<double> mass_;            // [rows]
+  std::vector<std::uint32_t> group_of_;  // [num_elements]
+  std::vector<std::uint32_t> place_;     // [num_elements] in the arrays of the group
+  Rows<dim> reference_;                  // of the rows of every patch
+  std::vector<double> mass_, true_mass_; // [rows]; the true one is empty unless it is scaled
+  double weighed2_ = 0.0;                // sum of the squares of the true ones, kg²
   std::vector<Moved> moved_;
 
   // At t_n.
@@ -200,6 +232,8 @@ private:
   std::vector<double> load_force_;                // [loads_.nodes()][dim] of this step, N
   std::vector<Vec<dim>> reactions_, wall_forces_; // of the last step, N
   WorkBook damped_work_, external_work_, interface_work_;
+  double unbalanced_force_ = 0.0;
+  Peak peak_;
 };
 
 } // namespace kerf::fem

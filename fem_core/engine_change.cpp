@@ -77,7 +77,7 @@ template <int dim> void Engine<dim>::support_absorbing() {
   compute_forces(false);
   for (std::size_t k = 0; k < support_.size(); ++k) {
     const std::uint32_t row = patches_.row_of_node[absorbing_.nodes()[k].node];
-    support_[k] = -force_[row] - mass_[row] * settings_.gravity;
+    support_[k] = -force_[row] - weight(row);
   }
 }
 
@@ -99,6 +99,8 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
   settings_.gravity = change.gravity.value_or(settings_.gravity);
   settings_.mass_damping = change.mass_damping.value_or(settings_.mass_damping);
   settings_.local_damping = change.local_damping.value_or(settings_.local_damping);
+  settings_.kinetic_damping = change.kinetic_damping.value_or(settings_.kinetic_damping);
+  peak_ = {}; // of what moves from here on
   if (change.boundary || change.loads || removed != removed_) {
     settings_.boundary = change.boundary.value_or(settings_.boundary);
     settings_.loads = change.loads.value_or(settings_.loads);

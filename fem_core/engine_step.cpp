@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kerf::fem {
 namespace {
@@ -47,9 +48,9 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
       std::copy_n(scratch.force.at(patch.num_own), patch.num_shared * row_size<dim>,
                   parts_.at(patch.first_shared));
       if (finish)
-        advance<dim>(step, patch.num_own, &mass_[patch.first_row], scratch.force.data(), nullptr,
-                     velocity_.at(patch.first_row), displacement_.at(patch.first_row),
-                     patch_sums_[k]);
+        advance<dim>(step, patch.num_own, &mass_[patch.first_row], weighed(patch.first_row),
+                     scratch.force.data(), nullptr, velocity_.at(patch.first_row),
+                     displacement_.at(patch.first_row), patch_sums_[k]);
       else
         std::copy_n(scratch.force.data(), patch.num_own * row_size<dim>,
                     force_.at(patch.first_row));
@@ -128,15 +129,17 @@ template <int dim> StepSettings<dim> Engine<dim>::step_settings() const {
           .first = step_ == 0,
           .gravity = settings_.gravity,
           .mass_damping = settings_.mass_damping,
-          .local_damping = settings_.local_damping};
+          .local_damping = settings_.local_damping,
+          .stop = stops()};
 }
 
 template <int dim>
 void Engine<dim>::own_forces(std::span<const std::uint32_t> nodes, std::span<double> force) const {
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    for (int i = 0; i < dim; ++i)
-      force[k * dim + i] = force_[patches_.row_of_node[nodes[k]]][i] +
-                           mass_[patches_.row_of_node[nodes[k]]] * settings_.gravity[i];
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::uint32_t row = patches_.row_of_node[nodes[k]];
+    const Vec<dim> sum = force_[row] + weight(row);
+    std::copy_n(sum.data(), dim, &force[k * dim]);
+  }
 }
 
 template <int dim>
@@ -181,14 +184,16 @@ template <int dim> void Engine<dim>::integrate() {
   push_by_walls(pushed);
 
   const bool first = step_ == 0;
+  double external2 = weighed2_ * settings_.gravity.squaredNorm();
   Work external, of_interface;
   reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
   for (std::size_t k = 0; k < moved_.size(); ++k) {
     const Moved& moved = moved_[k];
     const double after = velocity_[moved.row][moved.component];
-    const double reaction = mass_[moved.row] * ((after - moved_before[k]) / time_step_ -
-                                                settings_.gravity[moved.component]) -
+    const double reaction = mass_[moved.row] * (after - moved_before[k]) / time_step_ -
+                            weight(moved.row)[moved.component] -
                             force_[moved.row][moved.component]; // N
+    external2 += reaction * reaction;
     reactions_[boundary_.setting_of({moved.node, moved.component})][moved.component] += reaction;
     external += {.before = 0.5 * time_step_ * reaction * moved_before[k],
                  .after = 0.5 * time_step_ * reaction * after};
@@ -200,10 +205,12 @@ template <int dim> void Engine<dim>::integrate() {
     const Vec<dim> half_way = 0.5 * time_step_ * before,
                    other_half = 0.5 * time_step_ * velocity_[row];
     external += {.before = driving.dot(half_way), .after = driving.dot(other_half)};
+    external2 += driving.squaredNorm();
     sums_.damped += {.before = resisting.dot(half_way), .after = resisting.dot(other_half)};
   }
   for (std::size_t k = 0; k < interface_rows_.size(); ++k) {
     const Vec<dim> f = interface_force_[interface_rows_[k]];
+    external2 += f.squaredNorm();
     of_interface += {.before = 0.5 * time_step_ * f.dot(interface_before[k]),
                      .after = 0.5 * time_step_ * f.dot(velocity_[interface_rows_[k]])};
   }
@@ -212,7 +219,21 @@ template <int dim> void Engine<dim>::integrate() {
   interface_work_.add(of_interface, first);
   damped_work_.add(sums_.damped, first);
   forces_are_current_ = false;
+  finish_step(external2);
   ++step_;
+}
+
+/// How far the body is from rest, and whether it passed a peak of its kinetic energy. Less than a
+/// tenth below the peak may be a fast motion beside a slow one that still gains speed.
+template <int dim> void Engine<dim>::finish_step(double external2) {
+  const double unbalanced2 = std::max(0.0, sums_.unbalanced2), all = unbalanced2 + external2;
+  unbalanced_force_ = all > 0.0 ? std::sqrt(unbalanced2 / all) : 0.0;
+  if (stops()) {
+    peak_ = {};
+    return;
+  }
+  peak_.energy = std::max(peak_.energy, sums_.kinetic);
+  peak_.passed = sums_.kinetic < 0.9 * peak_.energy;
 }
 
 /// Of the plain rows, by patches as when those finish them.
@@ -223,9 +244,9 @@ template <int dim> void Engine<dim>::advance_plain() {
 #pragma omp parallel for schedule(static) if (num_patches > 1)
   for (std::int64_t p = 0; p < num_patches; ++p) {
     const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
-    advance<dim>(step, patch.num_own, mass_.data() + patch.first_row, force_.at(patch.first_row),
-                 nullptr, velocity_.at(patch.first_row), displacement_.at(patch.first_row),
-                 patch_sums_[static_cast<std::size_t>(p)]);
+    advance<dim>(step, patch.num_own, mass_.data() + patch.first_row, weighed(patch.first_row),
+                 force_.at(patch.first_row), nullptr, velocity_.at(patch.first_row),
+                 displacement_.at(patch.first_row), patch_sums_[static_cast<std::size_t>(p)]);
   }
 }
 
@@ -238,9 +259,9 @@ template <int dim> void Engine<dim>::advance_special() {
   for (std::int64_t b = 0; b < static_cast<std::int64_t>(blocks); ++b) {
     const std::size_t begin = static_cast<std::size_t>(b) * rows_per_block;
     const std::size_t row = first + begin;
-    advance<dim>(step, std::min(rows_per_block, count - begin), &mass_[row], force_.at(row),
-                 moved_.empty() ? nullptr : prescribed_.at(begin), velocity_.at(row),
-                 displacement_.at(row), sums[static_cast<std::size_t>(b)]);
+    advance<dim>(step, std::min(rows_per_block, count - begin), &mass_[row], weighed(row),
+                 force_.at(row), moved_.empty() ? nullptr : prescribed_.at(begin),
+                 velocity_.at(row), displacement_.at(row), sums[static_cast<std::size_t>(b)]);
   }
   sums_ = {};
   for (const RowSums<dim>& of_patch : patch_sums_)
@@ -287,21 +308,28 @@ template <int dim> bool Engine<dim>::is_held(std::uint32_t row, int component) c
   return boundary_.is_prescribed(patches_.node_of_row[row], component);
 }
 
-/// Time over which the forces of this step change the velocities: v^(1/2) = v^0 + a dt/2.
+/// Time over which the forces of this step change the velocities: v^(1/2) = v^0 + a dt/2, and
+/// likewise where what is free starts anew from rest.
 template <int dim> double Engine<dim>::span_of_step() const {
-  return step_ == 0 ? 0.5 * time_step_ : time_step_;
+  return step_ == 0 || stops() ? 0.5 * time_step_ : time_step_;
 }
 
 /// Adds a force to a row that has been advanced, which gives it another velocity. Damping stays
-/// what it was before.
+/// what it was before, but for what a stop takes.
 template <int dim>
 void Engine<dim>::push(std::uint32_t row, const Vec<dim>& before, const Vec<dim>& after,
                        const Vec<dim>& force) {
-  const double m = mass_[row], span = span_of_step();
-  const Vec<dim> old = velocity_[row], change = after - old, gravity = m * settings_.gravity;
+  const double m = mass_[row], span = step_ == 0 ? 0.5 * time_step_ : time_step_;
+  const Vec<dim> old = velocity_[row], change = after - old, gravity = weight(row);
   const Vec<dim> resisted = force_[row] + gravity - m / span * (old - before); // N, by damping
+  const Vec<dim> resists = stops() ? Vec<dim>(resisted + force - m / span * change) : resisted;
   velocity_[row] = after;
   displacement_[row] += time_step_ * change;
+  for (int i = 0; i < dim; ++i)
+    if (!is_held(row, i)) {
+      const double f = force_[row][i] + gravity[i];
+      sums_.unbalanced2 += (f + force[i]) * (f + force[i]) - f * f;
+    }
   force_[row] += force;
   if (step_ == 0) { // v^(-1/2) = 2 v^0 - v^(1/2) changes as well, and their mean stays
     sums_.kinetic += 0.5 * m * ((2.0 * before - after).dot(after) - (2.0 * before - old).dot(old));
@@ -312,7 +340,8 @@ void Engine<dim>::push(std::uint32_t row, const Vec<dim>& before, const Vec<dim>
   sums_.gravity.after += 0.5 * time_step_ * gravity.dot(change);
   for (int i = 0; i < dim; ++i)
     if (!is_held(row, i))
-      sums_.damped.after += 0.5 * time_step_ * resisted[i] * change[i];
+      sums_.damped += {.before = 0.5 * time_step_ * (resists[i] - resisted[i]) * before[i],
+                       .after = 0.5 * time_step_ * (resists[i] * after[i] - resisted[i] * old[i])};
 }
 
 /// What loads, dashpots and walls act on, in this order, with the velocities before the step.
@@ -348,14 +377,15 @@ template <int dim> void Engine<dim>::push_by_dashpots(std::span<Pushed> pushed) 
     driving = support_[k] + Eigen::Map<const Vec<dim>>(&incoming[k * dim]);
     const double D = mass_[row] / span_of_step();
     Matrix A = D * Matrix::Identity() + 0.5 * damper;
-    Vec<dim> b = D * old - 0.5 * damper * before + driving;
+    const Vec<dim> from = stops() ? Vec<dim>(Vec<dim>::Zero()) : before;
+    Vec<dim> b = D * old - 0.5 * damper * from + driving;
     for (int i = 0; i < dim; ++i)
       if (is_held(row, i)) {
         A.row(i) = Vec<dim>::Unit(i).transpose();
         b[i] = old[i];
       }
     const Vec<dim> after = A.inverse() * b;
-    resisting = 0.5 * damper * (before + after);
+    resisting = 0.5 * damper * (from + after);
     push(row, before, after, driving - resisting);
   }
 }

@@ -19,40 +19,44 @@ namespace fem {
 
 template <int dim>
 void advance(const StepSettings<dim>& step, std::size_t count, const double* mass,
-             const double* force, const double* prescribed, double* velocity, double* displacement,
-             RowSums<dim>& sums) {
+             const double* weighed, const double* force, const double* prescribed, double* velocity,
+             double* displacement, RowSums<dim>& sums) {
   RowsView view{.count = count,
                 .mass = mass,
+                .weighed = weighed,
                 .force = force,
                 .prescribed = prescribed,
                 .velocity = velocity,
                 .displacement = displacement,
                 .time_step = step.time_step,
                 .first = step.first,
+                .stop = step.stop,
                 .mass_damping = step.mass_damping,
                 .local_damping = step.local_damping,
                 .gravity = {},
                 .kinetic = {},
                 .momentum = {},
-                .change = {},
-                .lost = {}};
+                .fallen = {},
+                .lost = {},
+                .squares = {}};
   for (int i = 0; i < dim; ++i)
     view.gravity[i] = step.gravity[i];
   dispatch(baseline::advance<dim>, avx2::advance<dim>, avx512::advance<dim>)(view);
-  const double half = 0.5 * step.time_step; // of the work, which each of the velocities does
+  const double half = 0.5 * step.time_step; // each of the velocities does its half of the work
   for (int i = 0; i < dim; ++i) {
+    const double g = view.gravity[i];
     sums.kinetic += 0.5 * view.kinetic[i];
-    sums.momentum[i] += 0.5 * view.momentum[i];
+    sums.momentum[i] += 0.5 * (view.momentum[0][i] + view.momentum[1][i]);
     sums.damped += {.before = half * view.lost[0][i], .after = half * view.lost[1][i]};
-    sums.gravity += {.before = 0.5 * half * view.gravity[i] * (view.momentum[i] - view.change[i]),
-                     .after = 0.5 * half * view.gravity[i] * (view.momentum[i] + view.change[i])};
+    sums.gravity += {.before = half * g * view.fallen[0][i], .after = half * g * view.fallen[1][i]};
+    sums.unbalanced2 += view.squares[i];
   }
 }
 
 template void advance(const StepSettings<2>&, std::size_t, const double*, const double*,
-                      const double*, double*, double*, RowSums<2>&);
+                      const double*, const double*, double*, double*, RowSums<2>&);
 template void advance(const StepSettings<3>&, std::size_t, const double*, const double*,
-                      const double*, double*, double*, RowSums<3>&);
+                      const double*, const double*, double*, double*, RowSums<3>&);
 
 } // namespace fem
 } // namespace kerf

@@ -13,6 +13,7 @@ template <int dim> struct StepSettings {
   Vec<dim> gravity = Vec<dim>::Zero(); // m/s²
   double mass_damping = 0.0;           // a of the force -a m v, 1/s
   double local_damping = 0.0;          // share of the resultant that opposes the motion
+  bool stop = false;                   // what is free starts anew at t_n, from v = 0
 };
 
 /// Sums over rows of a step.
@@ -21,12 +22,14 @@ template <int dim> struct RowSums {
   Vec<dim> momentum = Vec<dim>::Zero(); // at t_n, with the mean of both velocities, N s
   Work damped;                          // that damping took
   Work gravity;
+  double unbalanced2 = 0.0; // squares of the resultants on what is free, without damping, N²
 
   RowSums& operator+=(const RowSums& other) {
     kinetic += other.kinetic;
     momentum += other.momentum;
     damped += other.damped;
     gravity += other.gravity;
+    unbalanced2 += other.unbalanced2;
     return *this;
   }
 };
@@ -34,13 +37,14 @@ template <int dim> struct RowSums {
 /// a = F/m, v^(n+1/2) = v^(n-1/2) + a dt, u^(n+1) = u^n + v^(n+1/2) dt; Rojek (2008) eqs 3-5.
 ///
 /// @param mass    [count] kg, positive
+/// @param weighed [count] what gravity acts on, kg; null: the mass
 /// @param force   [count] resultants without gravity and damping, N
 /// @param prescribed  [count] velocities that are given, m/s; NaN where a component is free; null:
 ///                    all are
 /// @param velocity, displacement  [count] v^(n-1/2), m/s, and u^n, m; receive the next ones
 template <int dim>
 void advance(const StepSettings<dim>& step, std::size_t count, const double* mass,
-             const double* force, const double* prescribed, double* velocity, double* displacement,
-             RowSums<dim>& sums);
+             const double* weighed, const double* force, const double* prescribed, double* velocity,
+             double* displacement, RowSums<dim>& sums);
 
 } // namespace kerf::fem

@@ -94,6 +94,7 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
       .motion_scale = rate || group.increments ? motion.time_step : 1.0,
       .force = scratch.force.data(),
       .alpha = part(group.alpha, per_batch(group.alpha), patch),
+      .volume = part(group.volume, per_batch(group.volume), patch),
       .length = part(group.length, per_batch(group.length), patch),
       .dilatation = scratch.dilatation.data(),
       .stress = part(group.stress, per_batch(group.stress), patch),

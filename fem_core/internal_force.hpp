@@ -16,13 +16,13 @@ struct GroupKernel {
   Kinematics kinematics = Kinematics::small;
   bool increments = false; // the law takes increments of strain, and its stress is stored
   int points = 1;          // of each element
-  PointLaw law = {.parameters = nullptr, .respond = nullptr, .history = 0, .thickness = -1};
+  PointLaw law = {.parameters = nullptr, .respond = nullptr, .history = 0};
   std::shared_ptr<const void> parameters; // of the law
   Moduli moduli = {};
   ElementConstants constants = {};
 
   // Arrays of the group as PatchView has them; empty where there is nothing of the kind.
-  std::vector<double> alpha, length;
+  std::vector<double> alpha, volume, length;
   PatchKernel compute_dilatation = nullptr;       // of nodal_pressure
   std::vector<double> dilatation;                 // [num_rows]
   std::vector<double> stress, history, hourglass; // change in every step

@@ -96,6 +96,11 @@ void check(const Material& material, Shape shape, Plane plane) {
   if (!(material.quadratic_viscosity >= 0.0))
     throw InputError("quadratic_viscosity",
                      fmt::format("{} must not be negative", material.quadratic_viscosity));
+  if (!(material.hourglass_viscosity >= 0.0 && material.hourglass_viscosity <= 1.0))
+    throw InputError("hourglass_viscosity",
+                     fmt::format("{} must be from 0 to 1", material.hourglass_viscosity));
+  if (std::holds_alternative<NeoHookean>(material.law) && material.hourglass_viscosity > 0.0)
+    throw InputError("hourglass_viscosity", "neo_hookean has hourglass stiffness only");
   if (std::holds_alternative<NeoHookean>(material.law) &&
       material.linear_viscosity + material.quadratic_viscosity > 0.0)
     throw InputError("linear_viscosity", "neo_hookean has no bulk viscosity");
@@ -124,7 +129,9 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
           plane == Plane::stress ? Response::hyperelastic_plane_stress : Response::hyperelastic;
     } else {
       constexpr bool linear = LinearLaw<LawType>;
-      const bool viscous = material.linear_viscosity + material.quadratic_viscosity > 0.0;
+      const bool viscous =
+          material.linear_viscosity + material.quadratic_viscosity > 0.0 ||
+          (material.formulation == Formulation::one_point && material.hourglass_viscosity > 0.0);
       group.increments = material.finite_strain || !linear || stored || viscous ||
                          material.formulation == Formulation::nodal_pressure;
       if constexpr (std::is_base_of_v<IsotropicElastic, LawType>)
@@ -135,8 +142,6 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
             group.moduli.lambda *= 2.0 * law.moduli.mu / law.moduli.uniaxial();
         }
       group.law.history = group.increments ? LawType::history : 0;
-      if (material.finite_strain && plane == Plane::stress)
-        group.law.thickness = LawType::history - 1;
       if (group.increments) {
         group.stress.assign(lengths.size() * points * size, 0.0);
         group.initial_history.resize(lengths.size() * points * LawType::history);
@@ -170,7 +175,10 @@ GroupKernel make_group(const Material& material, Shape shape, Plane plane,
     group.constants.quadratic_viscosity = b_2 * b_2 * material.density();
   }
   if (material.formulation == Formulation::one_point) {
-    group.constants.hourglass = material.hourglass_stiffness * material.bound().uniaxial();
+    const double stiffness = material.bound().uniaxial();
+    group.constants.hourglass = material.hourglass_stiffness * stiffness;
+    group.constants.hourglass_viscosity =
+        material.hourglass_viscosity * std::sqrt(material.density() * stiffness);
     if (group.increments)
       group.hourglass.assign(lengths.size() * (shape == Shape::quad4 ? 2 : 12), 0.0);
   }

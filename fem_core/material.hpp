@@ -29,6 +29,9 @@ struct Material {
   bool finite_strain = false;
   Formulation formulation = Formulation::full;
   double hourglass_stiffness = 0.1; // of one_point, as a share of about that of full integration
+  /// Of one_point: zeta of a hourglass mode q'' + zeta W q' + k W² q = 0, with k the stiffness
+  /// above and W its frequency for k = 1; up to 1.
+  double hourglass_viscosity = 0.0;
   double linear_viscosity = 0.0;    // of the bulk: b_1, about 0.06
   double quadratic_viscosity = 0.0; // b_2, about 1.2
 

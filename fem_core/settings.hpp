@@ -116,6 +116,13 @@ template <int dim> struct InSituStress {
   double overburden = 0.0; // Pa, on the surface
 };
 
+/// More inertia than the material has, for a larger time step. Waves are slower; weight and static
+/// results are not changed. One of the two:
+struct MassScaling {
+  double critical_step = 0.0; // s: elements with a smaller one of their own become heavier
+  double factor = 1.0;        // of all masses
+};
+
 template <int dim> struct Settings {
   std::vector<MaterialSetting<dim>> materials;
   Plane plane = Plane::strain; // of 2D
@@ -128,6 +135,10 @@ template <int dim> struct Settings {
   Vec<dim> gravity = Vec<dim>::Zero(); // m/s²
   double mass_damping = 0.0;           // a of the force -a m v, 1/s
   double local_damping = 0.0;          // share of the resultant that opposes the motion, 0 to 1
+  /// Everything that is free stops behind each peak of the kinetic energy, and starts anew: a way
+  /// to a static state that needs no number.
+  bool kinetic_damping = false;
+  std::optional<MassScaling> mass_scaling{};
 };
 
 } // namespace kerf::fem

@@ -19,12 +19,13 @@ struct StateParts {
 
   /// Forces are computed anew in every step, and what was before t_n is overwritten.
   template <int dim, class Visit> static void of(Engine<dim>& engine, Visit& visit) {
-    auto& [mesh, settings, boundary, loads, absorbing, walls, material_of, alpha, removed, active,
-           patches, groups, group_of, place, reference, mass, moved, time_step, step, changed_at,
-           displacement, velocity, initial_displacement, origin, support, force, parts,
-           forces_are_current, prescribed, scratch, interface_rows, interface_force, element_work,
-           patch_work, patch_sums, sums, load_force, reactions, wall_forces, damped_work,
-           external_work, interface_work] = engine;
+    auto& [mesh, settings, boundary, loads, absorbing, walls, material_of, density_factor, alpha,
+           removed, active, patches, groups, group_of, place, reference, mass, true_mass, weighed2,
+           moved, time_step, step, changed_at, displacement, velocity, initial_displacement, origin,
+           support, force, parts, forces_are_current, prescribed, scratch, interface_rows,
+           interface_force, element_work, patch_work, patch_sums, sums, load_force, reactions,
+           wall_forces, damped_work, external_work, interface_work, unbalanced_force, peak] =
+        engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);
@@ -38,11 +39,14 @@ struct StateParts {
     visit("damped_work", damped_work);
     visit("external_work", external_work);
     visit("interface_work", interface_work);
+    visit("unbalanced_force", unbalanced_force);
+    visit("peak_energy", peak.energy);
+    visit("peak_passed", peak.passed);
   }
   template <class Visit> static void of(GroupKernel& group, Visit& visit) {
     auto& [compute, kinematics, increments, points, law, parameters, moduli, constants, alpha,
-           length, compute_dilatation, dilatation, stress, history, hourglass, initial_history] =
-        group;
+           volume, length, compute_dilatation, dilatation, stress, history, hourglass,
+           initial_history] = group;
     visit("stress", stress);
     visit("history", history);
     visit("hourglass", hourglass);

@@ -28,6 +28,10 @@ std::vector<Key> common_keys(const std::string& key) {
       {key + ".hourglass_stiffness", "fem", number, "", none, in(from_zero), "0.1",
        "the stiffness of the hourglass control of one_point, as a share of about that of full "
        "integration; 0.1 when not given"},
+      {key + ".hourglass_viscosity", "fem", number, "", none, in(share), "0.1",
+       "the viscosity of the hourglass control of one_point: twice the damping ratio of a "
+       "hourglass "
+       "mode with the stiffness of full integration; 0 when not given"},
       {key + ".linear_viscosity", "fem", number, "", "0.0", in(from_zero), "0.06",
        "the linear coefficient of bulk viscosity, over density, wave speed and element length"},
       {key + ".quadratic_viscosity", "fem", number, "", "0.0", in(from_zero), "1.2",

@@ -35,6 +35,7 @@ const Words of_all = {"model",
                       "box",
                       "formulation",
                       "hourglass_stiffness",
+                      "hourglass_viscosity",
                       "linear_viscosity",
                       "quadratic_viscosity"};
 
@@ -143,12 +144,12 @@ private:
                     fmt::format("{}.axis = {} has {} numbers.", key, shown(material["axis"]),
                                 material["axis"].size()),
                     "give x, y and z, also in 2D.");
-    if (!material["hourglass_stiffness"].is_null() && material["formulation"] != "one_point")
-      problems_.add(key + ".hourglass_stiffness",
-                    fmt::format("{}.hourglass_stiffness is given, but formulation = {} does not "
-                                "use it.",
-                                key, shown(material["formulation"])),
-                    "leave it out, or give formulation = \"one_point\".");
+    for (const char* const name : {"hourglass_stiffness", "hourglass_viscosity"})
+      if (!material[name].is_null() && material["formulation"] != "one_point")
+        problems_.add(fmt::format("{}.{}", key, name),
+                      fmt::format("{}.{} is given, but formulation = {} does not use it.", key,
+                                  name, shown(material["formulation"])),
+                      "leave it out, or give formulation = \"one_point\".");
   }
 
   void refuse(const string& key, const string& name, const Model& own) {

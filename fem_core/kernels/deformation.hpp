@@ -114,20 +114,29 @@ template <int dim> KERF_INLINE Matrix<dim> product(const Matrix<dim>& a, const M
   return result;
 }
 
-/// The rotation that an increment of spin makes: R = (1 - W/2)^-1 (1 + W/2), which is a rotation
-/// whatever its size; T. J. R. Hughes and J. Winget, doi:10.1002/nme.1620151210.
+/// The root of the rotation R = (1 - W/2)^-1 (1 + W/2) that an increment of spin makes, which is
+/// one whatever its size; T. J. R. Hughes and J. Winget, doi:10.1002/nme.1620151210. Turned by it
+/// once before the strain of the increment counts and once after, a stress comes back when motion
+/// does.
 /// @param g  factor * g is the gradient of the displacement increment in the middle of the step
-template <int dim> KERF_INLINE Matrix<dim> turn_of(const Matrix<dim>& g, const Lanes& factor) {
-  const Lanes quarter = 0.25 * factor; // half the axial vector of W
+template <int dim> KERF_INLINE Matrix<dim> half_turn_of(const Matrix<dim>& g, const Lanes& factor) {
+  // With a half the axial vector of W, R has the quaternion 1 + a, its root 1 + a / (1 + |1 + a|).
+  const Lanes quarter = 0.25 * factor;
+  const auto half = [](const Lanes& squared) { return inverse(1.0 + square_root(1.0 + squared)); };
   if constexpr (dim == 2) {
-    const Lanes a = quarter * (g.m[1][0] - g.m[0][1]);
+    Lanes a = quarter * (g.m[1][0] - g.m[0][1]);
+    a *= half(a * a);
     const Lanes f = inverse(1.0 + a * a);
     const Lanes cosine = (1.0 - a * a) * f, sine = 2.0 * a * f;
     return {{{cosine, -sine}, {sine, cosine}}};
   } else {
-    const Lanes x = quarter * (g.m[2][1] - g.m[1][2]);
-    const Lanes y = quarter * (g.m[0][2] - g.m[2][0]);
-    const Lanes z = quarter * (g.m[1][0] - g.m[0][1]);
+    Lanes x = quarter * (g.m[2][1] - g.m[1][2]);
+    Lanes y = quarter * (g.m[0][2] - g.m[2][0]);
+    Lanes z = quarter * (g.m[1][0] - g.m[0][1]);
+    const Lanes s = half(x * x + y * y + z * z);
+    x *= s;
+    y *= s;
+    z *= s;
     const Lanes f = 2.0 * inverse(1.0 + x * x + y * y + z * z);
     return {{{1.0 - f * (y * y + z * z), f * (x * y - z), f * (x * z + y)},
              {f * (x * y + z), 1.0 - f * (x * x + z * z), f * (y * z - x)},

@@ -61,8 +61,9 @@ template <int dim> struct PointForce {
   Matrix<dim> cof;
   Lanes weight; // the force is weight * stress . cof
   Lanes hoop;   // and, of the hoop stress, hoop * N_a
-  Lanes volume; // in the middle of the increment, or of the reference configuration, m³
-  Lanes end;    // at the end of the increment, m³
+  Lanes volume; // that works, of the reference configuration, m³
+  Lanes middle; // in the middle of the increment, m³; as volume, unless there is a rate
+  Lanes end;    // at the end of the increment, m³; likewise
 };
 
 template <Shape shape, Kinematics kinematics, Space space> struct ElementVector {
@@ -113,8 +114,9 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
       d.gradient = middle.gradient_times_det(jm);
       d.factor = view.motion_scale * inverse(middle.det);
       f.cof = end.cof;
-      f.weight = share;
-      f.volume = share * middle.det;
+      f.volume = load(view.volume + at(q));
+      f.weight = f.volume * inverse(end.det); // Kirchhoff stress in the reference volume
+      f.middle = share * middle.det;
       f.end = share * end.det;
     } else {
       const Jacobian<dim> reference(jX);
@@ -129,7 +131,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
         f.cof = reference.cof;
         f.weight = share;
       }
-      f.end = f.volume;
+      f.middle = f.end = f.volume;
     }
     d.strain = symmetric(d.gradient, d.factor);
     if constexpr (ring) {
@@ -137,12 +139,18 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
       const Lanes of_strain =
           kinematics == Kinematics::rate ? radius - 0.5 * view.motion_scale * moved : radius;
       d.strain[2] = view.motion_scale * moved / of_strain;
-      f.hoop = whole_ring * f.end;
-      if constexpr (kinematics == Kinematics::total)
-        f.hoop *= radius / (radius + moved);
-      f.weight *= whole_ring * radius;
-      f.volume *= whole_ring * of_strain;
-      f.end *= whole_ring * radius;
+      if constexpr (kinematics == Kinematics::rate) {
+        f.hoop = f.volume / radius;
+        f.middle *= whole_ring * of_strain;
+        f.end *= whole_ring * radius;
+      } else {
+        f.hoop = whole_ring * f.volume;
+        if constexpr (kinematics == Kinematics::total)
+          f.hoop *= radius / (radius + moved);
+        f.weight *= whole_ring * radius;
+        f.volume *= whole_ring * radius;
+        f.middle = f.end = f.volume;
+      }
     }
     d.own_trace = trace(d.strain);
   }

@@ -41,8 +41,8 @@ void mean_dilatation_kernel(PatchView& patch) {
         Lanes volume{}, dilatation{};
         for (int q = 0; q < points; ++q) {
           e.deform(q, d[q], f[q]);
-          volume += f[q].volume;
-          dilatation += f[q].volume * trace(d[q].strain);
+          volume += f[q].middle;
+          dilatation += f[q].middle * trace(d[q].strain);
         }
         dilatation /= volume;
         Lanes end{}, pressure{};
@@ -54,11 +54,14 @@ void mean_dilatation_kernel(PatchView& patch) {
           d[q].own_trace = dilatation; // the mean pressure below works on the mean
           stress[q] = Response::stress(e, q, d[q], f[q], work);
           end += f[q].end;
-          pressure += f[q].end * trace(stress[q]);
+          pressure += f[q].volume * trace(stress[q]);
         }
-        pressure /= end;
+        pressure /= end; // of Cauchy's stress
         for (int q = 0; q < points; ++q) {
-          const Lanes missing = (1.0 / 3.0) * (pressure - trace(stress[q]));
+          Lanes wanted = pressure;
+          if constexpr (kinematics == Kinematics::rate)
+            wanted *= f[q].end / f[q].volume;
+          const Lanes missing = (1.0 / 3.0) * (wanted - trace(stress[q]));
           for (int k = 0; k < 3; ++k)
             stress[q][k] += missing;
           e.add(q, f[q], stress[q]);

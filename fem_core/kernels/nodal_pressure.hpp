@@ -22,8 +22,8 @@ void dilatation_kernel(PatchView& patch) {
         PointForce<Elements::dim> f;
         e.deform(0, d, f);
         Columns<Elements::dim> share{};
-        share.c[0] = (-1.0 / Elements::nodes) * f.volume * d.own_trace;
-        share.c[1] = (-1.0 / Elements::nodes) * f.volume;
+        share.c[0] = (-1.0 / Elements::nodes) * f.middle * d.own_trace;
+        share.c[1] = (-1.0 / Elements::nodes) * f.middle;
         for (int a = 0; a < Elements::nodes; ++a)
           subtract(view.force, view.nodes + place(first, Elements::nodes) + a * batch_size, share,
                    count);

@@ -136,6 +136,21 @@ KERF_INLINE void hourglass_part(const FieldModes<shape>& field,
   }
 }
 
+/// 1 / (nodes sqrt(3 dim))
+template <int dim>
+inline constexpr double viscous_share = dim == 2 ? 0.10206207261596575409 : 1.0 / 24.0;
+
+template <int dim> KERF_INLINE void turn_vector(Lanes (&v)[dim], const Matrix<dim>& rotation) {
+  Lanes turned[dim];
+  for (int i = 0; i < dim; ++i) {
+    turned[i] = rotation.m[i][0] * v[0];
+    for (int c = 1; c < dim; ++c)
+      turned[i] += rotation.m[i][c] * v[c];
+  }
+  for (int i = 0; i < dim; ++i)
+    v[i] = turned[i];
+}
+
 template <int dim> KERF_INLINE Matrix<dim> times(const Lanes& factor, const Matrix<dim>& a) {
   Matrix<dim> result;
   for (int i = 0; i < dim; ++i)
@@ -188,8 +203,14 @@ void one_point_kernel(PatchView& patch) {
         d.factor = view.motion_scale * inverse_volume;
         d.strain = symmetric(d.gradient, d.factor);
         d.own_trace = trace(d.strain);
-        f.volume = share * middle.volume;
-        f.weight = share;
+        if constexpr (kinematics == Kinematics::rate) { // Kirchhoff stress in the reference volume
+          f.volume = load(view.volume + e.at(0));
+          f.weight = f.volume * inverse(acting.volume);
+        } else {
+          f.volume = share * middle.volume;
+          f.weight = share;
+        }
+        f.end = share * acting.volume;
 
         // Stress, as the tensor S of force[mode] = S . b[mode].
         Tensor<dim> stress = Response::stress(e, 0, d, f, work);
@@ -211,27 +232,35 @@ void one_point_kernel(PatchView& patch) {
         const Lanes norm = acting.squared_norm();
         const Lanes stiffness =
             share * view.constants.hourglass / (3.0 * dim) * norm * inverse(acting.volume);
-        Lanes energy{};
+        Lanes energy{}, viscous{};
         if (view.hourglass != nullptr) { // of increments
           double* const stored = view.hourglass + place(first, hourglass * dim);
-          Matrix<dim> spin;
+          Matrix<dim> half_turn;
           if constexpr (kinematics == Kinematics::rate)
-            spin = turn_of<dim>(d.gradient, d.factor);
+            half_turn = half_turn_of<dim>(d.gradient, d.factor);
+          // -zeta rho c_P |b| / (n sqrt(3 d)) q', which is critical of full stiffness at zeta = 2.
+          Lanes viscosity{};
+          if (view.time_step != 0.0)
+            viscosity =
+                share * view.constants.hourglass_viscosity * viscous_share<dim> * square_root(norm);
           for (int k = 0; k < hourglass; ++k) {
-            Lanes before[dim];
+            Lanes before[dim], after[dim];
             for (int i = 0; i < dim; ++i)
               before[i] = load(stored + (k * dim + i) * batch_size);
+            if constexpr (kinematics == Kinematics::rate)
+              turn_vector<dim>(before, half_turn);
             for (int i = 0; i < dim; ++i) {
-              Lanes turned = before[i];
-              if constexpr (kinematics == Kinematics::rate) {
-                turned = spin.m[i][0] * before[0];
-                for (int c = 1; c < dim; ++c)
-                  turned += spin.m[i][c] * before[c];
-              }
               const Lanes step = view.motion_scale * q[k][i];
-              Q[k][i] = turned + stiffness * step;
-              energy += 0.5 * (turned + Q[k][i]) * step;
-              store(stored + (k * dim + i) * batch_size, Q[k][i]);
+              after[i] = before[i] + stiffness * step;
+              energy += 0.5 * (before[i] + after[i]) * step;
+            }
+            if constexpr (kinematics == Kinematics::rate)
+              turn_vector<dim>(after, half_turn);
+            for (int i = 0; i < dim; ++i) {
+              store(stored + (k * dim + i) * batch_size, after[i]);
+              const Lanes resisting = viscosity * q[k][i]; // N; the motion is a velocity here
+              viscous += resisting * view.motion_scale * q[k][i];
+              Q[k][i] = after[i] + resisting;
             }
           }
         } else {
@@ -243,6 +272,7 @@ void one_point_kernel(PatchView& patch) {
             }
         }
         work.hourglass += only(energy, count);
+        work.viscous += only(viscous, count);
 
         // Forces.
         const Lanes inverse_acting = inverse(acting.volume);

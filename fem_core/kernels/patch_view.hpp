@@ -38,12 +38,12 @@ struct PointLaw {
   const void* parameters;
   void (*respond)(); // a LawCall<dim> of the set of instructions that is in use
   int history;       // numbers a point besides the stress
-  int thickness;     // which of them is the strain through a thickness that changes; -1: none
 };
 
 /// Constants of all elements of a material.
 struct ElementConstants {
   double hourglass;           // stiffness against hourglass modes, as stiffness_of() has it, Pa
+  double hourglass_viscosity; // zeta rho c_P, Pa s/m
   double linear_viscosity;    // of the bulk, b_1 rho c_P, Pa s/m
   double quadratic_viscosity; // b_2² rho, kg/m³
 };
@@ -53,7 +53,7 @@ struct ElementWork {
   double internal;   // of the stress; or the elastic energy, if that is asked for
   double dissipated; // of that: plastic, damage
   double hourglass;
-  double viscous; // of bulk viscosity
+  double viscous; // of bulk viscosity and of that against hourglass modes
 };
 
 /// Memory that the next patch will need.
@@ -71,9 +71,12 @@ struct PatchView {
   double motion_scale;        // times the motion is the displacement (increment): 1 or time_step
   double* force;              // [rows] internal forces are taken off, N
   const double* alpha;        // [batches][points][batch_size] share; null: one everywhere
+  const double* volume;       // [batches][points][batch_size] of the reference, with alpha, m³;
+                              // of Kinematics::rate
   const double* length;       // [batches][batch_size] of the elements, for bulk viscosity, m
   const double* dilatation;   // [rows] mean of the elements around each node; of nodal_pressure
-  double* stress;             // [batches][points][components][batch_size], Pa; null: not stored
+  double* stress;             // [batches][points][components][batch_size], Pa; null: not stored;
+                              // with Kinematics::rate Kirchhoff's
   double* history;            // [batches][points][law.history][batch_size]
   double* hourglass;          // [batches][modes][dim][batch_size] forces of Kinematics::rate, N
   double time_step;           // of the increment, s; 0: none has been

@@ -10,7 +10,7 @@ namespace kerf::KERF_ISA {
 /// One point of a vector of elements, for a law that is called.
 template <int dim> struct LawPoint {
   Tensor<dim> strain; // or its increment
-  Tensor<dim> stress; // in: stored, already turned; out: of this strain
+  Tensor<dim> stress; // in: stored, turned to the middle of the step; out: of this strain
   Lanes dissipated;   // out: work density of the increment, J/m³
   double* history;    // [law.history][batch_size], the first of these lanes
   double time_step;   // s
@@ -90,12 +90,14 @@ KERF_INLINE void add_bulk_viscosity(const Elements& e, const Deformation<dim>& d
   const Lanes squeezed = select(rate < 0.0, length * rate, Lanes{}); // m/s
   const Lanes tension = view.constants.linear_viscosity * length * rate -
                         view.constants.quadratic_viscosity * squeezed * squeezed;
+  const Lanes J = f.end / f.volume;
   for (int k = 0; k < 3; ++k)
-    stress[k] += tension;
-  work.viscous += only(f.volume * tension * d.own_trace, e.count);
+    stress[k] += J * tension;
+  work.viscous += only(f.end * tension * d.own_trace, e.count);
 }
 
-/// A law of increments, or of total strain without an inlined variant.
+/// A law of increments, or of total strain without an inlined variant. With a rate the stress is
+/// Kirchhoff's, whose Jaumann rate leaves the stiffness of a body under stress symmetric.
 template <Kinematics kinematics> struct CalledResponse {
   template <class Elements, int dim>
   KERF_INLINE static Tensor<dim> stress(const Elements& e, int q, Deformation<dim>& d,
@@ -116,21 +118,19 @@ template <Kinematics kinematics> struct CalledResponse {
     Tensor<dim> mean;
     for (int k = 0; k < size; ++k)
       mean[k] = load(stored + k * batch_size);
-    if constexpr (kinematics == Kinematics::rate)
-      turn<dim>(mean, turn_of<dim>(d.gradient, d.factor));
+    Matrix<dim> half_turn;
+    if constexpr (kinematics == Kinematics::rate) {
+      half_turn = half_turn_of<dim>(d.gradient, d.factor);
+      turn<dim>(mean, half_turn);
+    }
     point.stress = mean;
     reinterpret_cast<LawCall<dim>>(view.law.respond)(view.law.parameters, point);
-    for (int k = 0; k < size; ++k) {
-      store(stored + k * batch_size, point.stress[k]);
+    for (int k = 0; k < size; ++k)
       mean[k] = 0.5 * (mean[k] + point.stress[k]);
-    }
-    if constexpr (kinematics == Kinematics::rate && dim == 2)
-      if (view.law.thickness >= 0) { // of plane stress, the strain through it comes last
-        const Lanes thickness =
-            LaneMath::exponential(load(point.history + view.law.thickness * batch_size));
-        f.weight *= thickness;
-        f.volume *= thickness;
-      }
+    if constexpr (kinematics == Kinematics::rate)
+      turn<dim>(point.stress, half_turn);
+    for (int k = 0; k < size; ++k)
+      store(stored + k * batch_size, point.stress[k]);
     // The pressure works on the element's own dilatation; see nodal_pressure.hpp.
     const Lanes power =
         contract(mean, d.strain) + (1.0 / 3.0) * trace(mean) * (d.own_trace - trace(d.strain));

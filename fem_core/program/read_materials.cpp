@@ -109,6 +109,7 @@ Material read_material(const Table& table, int dimension, Plane plane) {
                                                     {"one_point", one_point},
                                                     {"nodal_pressure", nodal_pressure}});
   material.hourglass_stiffness = table.number("hourglass_stiffness", material.hourglass_stiffness);
+  material.hourglass_viscosity = table.number("hourglass_viscosity", 0.0);
   material.linear_viscosity = table.number("linear_viscosity", 0.0);
   material.quadratic_viscosity = table.number("quadratic_viscosity", 0.0);
   return material;

@@ -37,8 +37,8 @@ TEST(BrokenSolid, every_model_is_taken_with_its_keys) {
         "model = \"isotropic_damage\"\ntensile_strength = 1e7\nfracture_energy = 100.0\n"
         "strength_ratio = 8.0\n" +
             moduli,
-        "formulation = \"one_point\"\nhourglass_stiffness = 0.05\nlinear_viscosity = 0.06\n"
-        "quadratic_viscosity = 1.2\n" +
+        "formulation = \"one_point\"\nhourglass_stiffness = 0.05\nhourglass_viscosity = 0.2\n"
+        "linear_viscosity = 0.06\nquadratic_viscosity = 1.2\n" +
             moduli})
     EXPECT_EQ(told(with_material(keys)), "") << keys;
 }

@@ -133,8 +133,8 @@ class NeoHookean:
 
 class Incremental:
     """Elastic, or J2 with linear hardening and radial return; in finite strain with the increment in
-    the middle of the step and the rotation of Hughes and Winget. One point: the mean gradient over
-    the element."""
+    the middle of the step and the rotation of Hughes and Winget, half of it before the increment
+    and half behind; the stress is Kirchhoff's. One point: the mean gradient over the element."""
 
     def __init__(self, body):
         self.body, self.first = body, True
@@ -168,6 +168,12 @@ class Incremental:
 
         stress = ufl.as_tensor([[component(min(i, j), max(i, j)) for j in range(3)]
                                 for i in range(3)])
+        self.ratio = None  # of the volumes of an element, which a stress in one point acts in
+        if run["formulation"] == "one_point":
+            self.ratio = ElementMean(body, volume) if self.finite else None
+            stress = stress / (self.ratio.function if self.ratio else 1.0)
+        else:
+            stress = stress / volume
         self.mean = self.mean_pressure = None
         if run["formulation"] == "mean_dilatation":
             self.mean = ElementMean(body, ufl.tr(increment), middle_volume)
@@ -186,6 +192,8 @@ class Incremental:
         self.body.before.x.array[:] = self.body.u.x.array
         components = [self.stress[..., i, j] for i, j in self.pairs]
         self.kept.x.array[:] = np.stack(components, axis=-1).ravel()
+        if self.ratio:
+            self.ratio.update()
         if self.mean_pressure:
             self.mean_pressure.update()
         return self.form
@@ -199,8 +207,9 @@ class Incremental:
             strain = strain + missing[..., None, None] / 3 * one
         stress = self.stress
         if self.finite:
-            half = (G - G.swapaxes(-1, -2)) / 4
-            R = np.linalg.solve(one - half, one + half)
+            spin = (G - G.swapaxes(-1, -2)) / 4  # half of it; its axial vector is tan(angle / 2)
+            spin = spin / (1 + np.sqrt(1 + np.sum(spin**2, axis=(-2, -1)) / 2))[..., None, None]
+            R = np.linalg.solve(one - spin, one + spin)
             stress = R @ stress @ R.swapaxes(-1, -2)
         lam, mu, H = run["lambda"], run["mu"], run["hardening_modulus"]
         trace = np.trace(strain, axis1=-2, axis2=-1)[..., None, None]
@@ -209,7 +218,8 @@ class Incremental:
         q = np.sqrt(1.5 * np.sum(s * s, axis=(-2, -1)))
         strength = run["yield_stress"] + H * self.plastic if run["law"] == "j2" else np.inf
         dp = np.maximum(q - strength, 0) / (3 * mu + H)
-        self.stress = stress - (3 * mu * dp / np.where(q > 0, q, 1))[..., None, None] * s
+        stress = stress - (3 * mu * dp / np.where(q > 0, q, 1))[..., None, None] * s
+        self.stress = R @ stress @ R.swapaxes(-1, -2) if self.finite else stress
         self.plastic = self.plastic + dp
 
 

@@ -5,6 +5,7 @@ add_executable(fem_tests
   ${CMAKE_CURRENT_LIST_DIR}/fem_engine.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_loads.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_participant.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/fem_restart.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_step_limit.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/fem_waves.cpp)

@@ -97,13 +97,15 @@ TEST(FemSettings, give_every_law_its_parameters) {
       R"({"model": "transversely_isotropic", "density": 2600, "young_in_plane": 4e10,
           "young_normal": 2e10, "poisson_in_plane": 0.2, "poisson_normal": 0.15,
           "shear_normal": 1e10, "axis": [3.0, 4.0, 0.0], "formulation": "one_point",
-          "hourglass_stiffness": 0.05, "linear_viscosity": 0.06, "quadratic_viscosity": 1.2})");
+          "hourglass_stiffness": 0.05, "hourglass_viscosity": 0.2, "linear_viscosity": 0.06,
+          "quadratic_viscosity": 1.2})");
   EXPECT_DOUBLE_EQ(layered.n[1], 0.8);
   EXPECT_EQ(layered.mu_n, 1e10);
   EXPECT_EQ(small.density(), 2600.0);
   EXPECT_FALSE(small.finite_strain);
   EXPECT_EQ(small.formulation, Formulation::one_point);
   EXPECT_EQ(small.hourglass_stiffness, 0.05);
+  EXPECT_EQ(small.hourglass_viscosity, 0.2);
   EXPECT_EQ(small.linear_viscosity, 0.06);
   EXPECT_EQ(small.quadratic_viscosity, 1.2);
 
