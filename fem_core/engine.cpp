@@ -112,6 +112,9 @@ template <int dim> void Engine<dim>::make_masses() {
         true_mass_[row] += m;
     }
   }
+  squared_masses_ = 0.0;
+  for (const double m : true_mass_.empty() ? mass_ : true_mass_)
+    squared_masses_ += m * m;
   moved_.clear();
   for (const Prescribed& entry : boundary_.entries()) {
     const std::uint32_t row = patches_.row_of_node[entry.node];

@@ -141,7 +141,7 @@ private:
     std::uint32_t node;
   };
 
-  struct Peak { // of the kinetic energy
+  struct Peak {          // of the kinetic energy
     double energy = 0.0; // largest since the last stop, J
     bool passed = false; // it has become smaller
   };
@@ -207,6 +207,7 @@ private:
   std::vector<std::uint32_t> place_;     // [num_elements] in the arrays of the group
   Rows<dim> reference_;                  // of the rows of every patch
   std::vector<double> mass_, true_mass_; // [rows]; the true one is empty unless it is scaled
+  double squared_masses_ = 0.0;          // of all rows, true ones, kg²
   std::vector<Moved> moved_;
 
   // At t_n.

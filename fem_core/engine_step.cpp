@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace kerf::fem {
 namespace {
@@ -180,9 +179,7 @@ template <int dim> void Engine<dim>::integrate() {
   push_by_walls(pushed);
 
   const bool first = step_ == 0;
-  const auto& weighing = true_mass_.empty() ? mass_ : true_mass_;
-  double external2 = settings_.gravity.squaredNorm() *
-                     std::transform_reduce(weighing.begin(), weighing.end(), weighing.begin(), 0.0);
+  double external2 = settings_.gravity.squaredNorm() * squared_masses_;
   Work external, of_interface;
   reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
   for (std::size_t k = 0; k < moved_.size(); ++k) {
