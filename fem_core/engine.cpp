@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 namespace kerf::fem {
@@ -119,8 +118,9 @@ template <int dim> void Engine<dim>::make_masses() {
         true_mass_[row] += m;
     }
   }
-  const auto& weighed = true_mass_.empty() ? mass_ : true_mass_;
-  weighed2_ = std::inner_product(weighed.begin(), weighed.end(), weighed.begin(), 0.0);
+  squared_masses_ = 0.0;
+  for (const double m : true_mass_.empty() ? mass_ : true_mass_)
+    squared_masses_ += m * m;
   moved_.clear();
   scratch_.clear();
   prescribed_ = Rows<dim>(patches_.num_special);

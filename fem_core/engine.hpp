@@ -208,7 +208,7 @@ private:
   std::vector<std::uint32_t> place_;     // [num_elements] in the arrays of the group
   Rows<dim> reference_;                  // of the rows of every patch
   std::vector<double> mass_, true_mass_; // [rows]; the true one is empty unless it is scaled
-  double weighed2_ = 0.0;                // sum of the squares of the true ones, kg²
+  double squared_masses_ = 0.0;          // of all rows, true ones, kg²
   std::vector<Moved> moved_;
 
   // At t_n.

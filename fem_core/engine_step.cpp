@@ -184,7 +184,7 @@ template <int dim> void Engine<dim>::integrate() {
   push_by_walls(pushed);
 
   const bool first = step_ == 0;
-  double external2 = weighed2_ * settings_.gravity.squaredNorm();
+  double external2 = settings_.gravity.squaredNorm() * squared_masses_;
   Work external, of_interface;
   reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
   for (std::size_t k = 0; k < moved_.size(); ++k) {

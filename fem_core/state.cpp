@@ -20,12 +20,12 @@ struct StateParts {
   /// Forces are computed anew in every step, and what was before t_n is overwritten.
   template <int dim, class Visit> static void of(Engine<dim>& engine, Visit& visit) {
     auto& [mesh, settings, boundary, loads, absorbing, walls, material_of, density_factor, alpha,
-           removed, active, patches, groups, group_of, place, reference, mass, true_mass, weighed2,
-           moved, time_step, step, changed_at, displacement, velocity, initial_displacement, origin,
-           support, force, parts, forces_are_current, prescribed, scratch, interface_rows,
-           interface_force, element_work, patch_work, patch_sums, sums, load_force, reactions,
-           wall_forces, damped_work, external_work, interface_work, unbalanced_force, peak] =
-        engine;
+           removed, active, patches, groups, group_of, place, reference, mass, true_mass,
+           squared_masses, moved, time_step, step, changed_at, displacement, velocity,
+           initial_displacement, origin, support, force, parts, forces_are_current, prescribed,
+           scratch, interface_rows, interface_force, element_work, patch_work, patch_sums, sums,
+           load_force, reactions, wall_forces, damped_work, external_work, interface_work,
+           unbalanced_force, peak] = engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);
