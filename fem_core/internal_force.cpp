@@ -34,6 +34,11 @@ template <class Number> auto* part(Number& array, std::size_t per_batch, const P
   return array.empty() ? nullptr : array.data() + patch.first_batch * per_batch;
 }
 
+/// The part of an array of rows.
+template <int dim> Ahead part(const Rows<dim>& rows, std::size_t first, std::size_t count) {
+  return {rows.at(first), count * sizeof(Row<dim>)};
+}
+
 } // namespace
 
 template <int dim> PatchScratch<dim>::PatchScratch(const Patches& patches) {
@@ -99,8 +104,16 @@ ElementWork compute_patch(const Patches& patches, const Patch& patch, GroupKerne
       .law = group.law,
       .moduli = group.moduli,
       .constants = group.constants,
+      .ahead = {},
       .work = {},
   };
+  if constexpr (dim == 3) // in 2D it costs as much as it gains
+    if (const Patch* const next = &patch + 1;
+        next < patches.patches.data() + patches.patches.size()) {
+      view.ahead[0] = part(motion.reference, next->first_copy, next->num_rows());
+      view.ahead[1] = part(motion.displacement, next->first_row, next->num_own);
+      view.ahead[2] = part(motion.velocity, next->first_row, next->num_own);
+    }
   (wanted == Wanted::dilatation ? group.compute_dilatation : group.compute)(view);
   return view.work;
 }

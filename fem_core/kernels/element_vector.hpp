@@ -4,6 +4,8 @@
 
 #include "fem_core/kernels/deformation.hpp"
 
+#include <iterator>
+
 namespace kerf::KERF_ISA {
 
 using fem::batch_size;
@@ -16,9 +18,21 @@ KERF_INLINE std::size_t place(std::size_t first, int count) {
   return first / batch_size * batch_size * static_cast<std::size_t>(count) + first % batch_size;
 }
 
-/// Calls act(first element, how many) for every vector of elements of a patch.
+/// Calls act(first element, how many) for every vector of elements of a patch, and meanwhile
+/// fetches what the next patch will need.
 template <class Act> KERF_INLINE void for_vectors(const PatchView& view, Act act) {
+  constexpr std::size_t line = 64, ranges = std::size(decltype(view.ahead){});
+  const std::size_t vectors = (view.num_elements + width - 1) / width;
+  const char* next[ranges];
+  std::size_t lines[ranges]; // for every vector
+  for (std::size_t k = 0; k < ranges; ++k) {
+    next[k] = static_cast<const char*>(view.ahead[k].begin);
+    lines[k] = (view.ahead[k].bytes / line + vectors - 1) / vectors;
+  }
   for (std::size_t first = 0; first < view.num_elements; first += width) {
+    for (std::size_t k = 0; k < ranges; ++k)
+      for (std::size_t n = 0; n < lines[k]; ++n, next[k] += line)
+        __builtin_prefetch(next[k], 0, 2);
     const std::size_t left = view.num_elements - first;
     act(first, left < width ? static_cast<int>(left) : width);
   }
@@ -65,6 +79,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
   KERF_INLINE ElementVector(const PatchView& patch, std::size_t at, int elements)
       : view(patch), first(at), count(elements) {
     const std::uint16_t* node = view.nodes + place(first, nodes);
+#pragma GCC unroll 8
     for (int a = 0; a < nodes; ++a) {
       X[a] = gather<dim>(view.reference, node + a * batch_size);
       motion[a] = gather<dim>(view.motion, node + a * batch_size);
@@ -143,6 +158,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
     Columns<dim> corner[nodes];
     df.corner_forces(corner);
     const std::uint16_t* node = view.nodes + place(first, nodes);
+#pragma GCC unroll 8
     for (int a = 0; a < nodes; ++a) {
       if constexpr (ring)
         corner[a].c[0] += force[a].c[0];
