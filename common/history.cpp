@@ -42,6 +42,12 @@ double to_number(const std::string& text, const std::filesystem::path& path, std
 
 } // namespace
 
+void add_axes(std::vector<Column>& columns, const std::string& name, const std::string& unit,
+              std::string_view axes) {
+  for (const char axis : axes)
+    columns.push_back({name + "_" + axis, unit});
+}
+
 History::History(std::filesystem::path path, std::vector<Column> columns, std::uint64_t first_step)
     : path_(std::move(path)), num_columns_(columns.size()) {
   std::string units, names;

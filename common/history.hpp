@@ -15,6 +15,10 @@ struct Column {
   std::string unit; // "J"; "1" of a plain number
 };
 
+/// "force_x", "force_y": a column for each of these axes, in their order.
+void add_axes(std::vector<Column>& columns, const std::string& name, const std::string& unit,
+              std::string_view axes);
+
 /// Writes a time series. The first line is "# units: 1,s,J", the second has the names. Every row
 /// goes out in one write, so a reader never sees half a row except perhaps the last of a process
 /// that was killed. Numbers are the shortest that read back to the same bits.

@@ -9,7 +9,8 @@
 
 namespace kerf::fem {
 
-/// Nothing: it stays. Tables of boundaries and loads count their times from the change.
+/// Nothing: it stays. Tables of the boundaries and of the loads that a change brings count their
+/// times from it.
 template <int dim> struct Change {
   std::optional<Vec<dim>> gravity{}; // m/s²
   std::optional<double> mass_damping{}, local_damping{};

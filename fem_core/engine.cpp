@@ -357,7 +357,7 @@ template <int dim> void Engine<dim>::start(double time_step) {
   if (!(time_step > 0.0))
     throw std::invalid_argument(fmt::format("the time step {} s must be positive", time_step));
   time_step_ = time_step;
-  step_ = changed_at_ = 0;
+  step_ = moved_since_ = loaded_since_ = 0;
   std::vector<double> u(mesh_.num_nodes() * dim), v(u.size());
   add_initial<dim>(mesh_, settings_.initial, u, v);
   const std::size_t rows = patches_.num_rows();
@@ -408,9 +408,9 @@ void Engine<dim>::motion(std::span<const std::uint32_t> nodes, std::span<double>
       position[k * dim + i] =
           mesh_.positions[std::size_t{nodes[k]} * dim + i] + displacement_[row][i];
       const bool moved = boundary_.is_prescribed(nodes[k], i) && mass_[row] > 0.0;
-      velocity[k * dim + i] = moved
-                                  ? boundary_.velocity(nodes[k], i, step_ - changed_at_, time_step_)
-                                  : velocity_[row][i];
+      velocity[k * dim + i] =
+          moved ? boundary_.velocity(nodes[k], i, step_ - moved_since_, time_step_)
+                : velocity_[row][i];
     }
   }
 }
@@ -444,6 +444,16 @@ template <int dim> std::vector<double> Engine<dim>::mass() const {
   for (std::size_t row = 0; row < mass_.size(); ++row)
     values[patches_.node_of_row[row]] = mass_[row];
   return values;
+}
+
+template <int dim> Vec<dim> Engine<dim>::load(std::size_t setting) const {
+  std::vector<double> u;
+  for (const std::uint32_t node : loads_.nodes()) {
+    const std::uint32_t row = patches_.row_of_node[node];
+    const Vec<dim> before = displacement_[row] - time_step_ * velocity_[row];
+    u.insert(u.end(), before.begin(), before.end());
+  }
+  return loads_.resultant(setting, static_cast<double>(step_ - 1 - loaded_since_) * time_step_, u);
 }
 
 template <int dim> std::optional<std::uint32_t> Engine<dim>::first_non_finite() const {

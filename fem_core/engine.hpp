@@ -125,6 +125,10 @@ public:
   std::size_t material_of(std::uint32_t element) const { return material_of_[element]; }
   /// One that takes part, at the displacements of this moment.
   ElementState<dim> element_state(std::uint32_t element) const;
+  const Boundary<dim>& boundary() const { return boundary_; }
+  const Loads<dim>& loads() const { return loads_; }
+  /// Resultant of one of the loads at the last t_n, N.
+  Vec<dim> load(std::size_t setting) const;
   /// Force of the support on the body at the last t_n, of one of the boundary settings, N.
   Vec<dim> reaction(std::size_t setting) const { return reactions_[setting]; }
   /// Force of a rigid wall on the body in the last step, N.
@@ -213,7 +217,7 @@ private:
 
   // At t_n.
   double time_step_ = 0.0;
-  std::int64_t step_ = 0, changed_at_ = 0; // where tables of boundaries and loads begin
+  std::int64_t step_ = 0, moved_since_ = 0, loaded_since_ = 0; // where their tables begin
   Rows<dim> displacement_, velocity_;
   std::vector<double> initial_displacement_; // [moved], when their tables begin
   Rows<dim> origin_;                         // of displacement_since_reset()

@@ -76,8 +76,11 @@ template <int dim> void Engine<dim>::support_absorbing() {
     return;
   compute_forces(false);
   for (std::size_t k = 0; k < support_.size(); ++k) {
-    const std::uint32_t row = patches_.row_of_node[absorbing_.nodes()[k].node];
-    support_[k] = -force_[row] - weight(row);
+    const std::uint32_t node = absorbing_.nodes()[k].node, row = patches_.row_of_node[node];
+    const Vec<dim> held = -force_[row] - weight(row);
+    for (int i = 0; i < dim; ++i)
+      if (!boundary_.is_prescribed(node, i))
+        support_[k][i] = held[i];
   }
 }
 
@@ -150,10 +153,15 @@ template <int dim> void Engine<dim>::change(const Change<dim>& change) {
         put(group.hourglass, of_element.hourglass);
       }
     }
-    changed_at_ = step_;
+    if (change.boundary)
+      moved_since_ = step_;
+    if (change.loads)
+      loaded_since_ = step_;
     initial_displacement_.clear();
     for (const auto& [row, component, node] : moved_)
-      initial_displacement_.push_back(displacement_[row][component]);
+      initial_displacement_.push_back(
+          displacement_[row][component] -
+          boundary_.displacement(node, component, step_ - moved_since_, time_step_));
     load_force_.assign(loads_.nodes().size() * dim, 0.0);
     reactions_.assign(settings_.boundary.size(), Vec<dim>::Zero());
   }

@@ -119,9 +119,11 @@ template <int dim> void Engine<dim>::add_loads() {
   std::vector<double> u(nodes.size() * dim);
   for (std::size_t k = 0; k < nodes.size(); ++k)
     Eigen::Map<Vec<dim>>(u.data() + k * dim) = displacement_[patches_.row_of_node[nodes[k]]];
-  loads_.compute(static_cast<double>(step_ - changed_at_) * time_step_, u, load_force_);
+  loads_.compute(static_cast<double>(step_ - loaded_since_) * time_step_, u, load_force_);
   for (std::size_t k = 0; k < nodes.size(); ++k)
     force_[patches_.row_of_node[nodes[k]]] += Eigen::Map<const Vec<dim>>(&load_force_[k * dim]);
+  for (std::size_t k = 0; k < support_.size(); ++k)
+    force_[patches_.row_of_node[absorbing_.nodes()[k].node]] += support_[k];
 }
 
 template <int dim> StepSettings<dim> Engine<dim>::step_settings() const {
@@ -167,7 +169,7 @@ template <int dim> void Engine<dim>::integrate() {
   for (const Moved& moved : moved_) {
     moved_before.push_back(velocity_[moved.row][moved.component]);
     prescribed_[moved.row - patches_.num_plain][moved.component] =
-        boundary_.velocity(moved.node, moved.component, step_ - changed_at_, time_step_);
+        boundary_.velocity(moved.node, moved.component, step_ - moved_since_, time_step_);
   }
 
   std::vector<Pushed> pushed = pushed_rows();
@@ -199,7 +201,7 @@ template <int dim> void Engine<dim>::integrate() {
                  .after = 0.5 * time_step_ * reaction * after};
     displacement_[moved.row][moved.component] =
         initial_displacement_[k] +
-        boundary_.displacement(moved.node, moved.component, step_ - changed_at_ + 1, time_step_);
+        boundary_.displacement(moved.node, moved.component, step_ - moved_since_ + 1, time_step_);
   }
   for (const auto& [row, before, driving, resisting] : pushed) {
     const Vec<dim> half_way = 0.5 * time_step_ * before,
@@ -373,12 +375,12 @@ template <int dim> void Engine<dim>::push_by_dashpots(std::span<Pushed> pushed) 
     if (!(mass_[row] > 0.0))
       continue;
     const Matrix& damper = absorbing_.nodes()[k].damper;
-    const Vec<dim> old = velocity_[row];
-    driving = support_[k] + Eigen::Map<const Vec<dim>>(&incoming[k * dim]);
+    const Vec<dim> old = velocity_[row], wave = Eigen::Map<const Vec<dim>>(&incoming[k * dim]);
+    driving = support_[k] + wave;
     const double D = mass_[row] / span_of_step();
     Matrix A = D * Matrix::Identity() + 0.5 * damper;
     const Vec<dim> from = stops() ? Vec<dim>(Vec<dim>::Zero()) : before;
-    Vec<dim> b = D * old - 0.5 * damper * from + driving;
+    Vec<dim> b = D * old - 0.5 * damper * from + wave;
     for (int i = 0; i < dim; ++i)
       if (is_held(row, i)) {
         A.row(i) = Vec<dim>::Unit(i).transpose();
@@ -386,7 +388,7 @@ template <int dim> void Engine<dim>::push_by_dashpots(std::span<Pushed> pushed) 
       }
     const Vec<dim> after = A.inverse() * b;
     resisting = 0.5 * damper * (from + after);
-    push(row, before, after, driving - resisting);
+    push(row, before, after, wave - resisting);
   }
 }
 

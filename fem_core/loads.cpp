@@ -96,6 +96,7 @@ Loads<dim>::Loads(const Mesh<dim>& mesh, std::vector<LoadSetting<dim>> settings,
     }
     for (const auto& [node, weight] : weight_of[k])
       nodes_.push_back(node);
+    num_nodes_.push_back(weight_of[k].size());
   }
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
@@ -123,26 +124,42 @@ template <int dim>
 void Loads<dim>::compute(double time, std::span<const double> displacement,
                          std::span<double> force) const {
   std::fill(force.begin(), force.end(), 0.0);
+  for (std::size_t k = 0; k < settings_.size(); ++k)
+    add(k, time, displacement, force);
+}
+
+template <int dim>
+Vec<dim> Loads<dim>::resultant(std::size_t load, double time,
+                               std::span<const double> displacement) const {
+  std::vector<double> force(nodes_.size() * dim, 0.0);
+  add(load, time, displacement, force);
+  Vec<dim> sum = Vec<dim>::Zero();
+  for (std::size_t a = 0; a < nodes_.size(); ++a)
+    sum += Eigen::Map<const Vec<dim>>(&force[a * dim]);
+  return sum;
+}
+
+template <int dim>
+void Loads<dim>::add(std::size_t k, double time, std::span<const double> displacement,
+                     std::span<double> force) const {
   const auto at = [](auto values, std::uint32_t place) {
     using Value = std::remove_reference_t<decltype(values[0])>;
     using Vector = std::conditional_t<std::is_const_v<Value>, const Vec<dim>, Vec<dim>>;
     return Eigen::Map<Vector>(values.data() + std::size_t{place} * dim);
   };
-  for (std::size_t k = 0; k < settings_.size(); ++k) {
-    Vec<dim> value;
-    for (int i = 0; i < dim; ++i)
-      value[i] = settings_[k].value[static_cast<std::size_t>(i)].value(time);
-    for (const auto& [place, weight] : shares_[k])
-      at(force, place) += weight * value;
-    for (const Pushed& face : pushed_[k]) {
-      FaceCorners<dim> x = face.corners;
+  Vec<dim> value;
+  for (int i = 0; i < dim; ++i)
+    value[i] = settings_[k].value[static_cast<std::size_t>(i)].value(time);
+  for (const auto& [place, weight] : shares_[k])
+    at(force, place) += weight * value;
+  for (const Pushed& face : pushed_[k]) {
+    FaceCorners<dim> x = face.corners;
+    for (std::uint32_t a = 0; a < face.size; ++a)
+      x.col(a) += at(displacement, face.place[a]);
+    integrate<dim>(x, space_, [&](const Eigen::Vector4d& N, const Vec<dim>& area) {
       for (std::uint32_t a = 0; a < face.size; ++a)
-        x.col(a) += at(displacement, face.place[a]);
-      integrate<dim>(x, space_, [&](const Eigen::Vector4d& N, const Vec<dim>& area) {
-        for (std::uint32_t a = 0; a < face.size; ++a)
-          at(force, face.place[a]) -= value[0] * N[a] * area;
-      });
-    }
+        at(force, face.place[a]) -= value[0] * N[a] * area;
+    });
   }
 }
 

@@ -28,6 +28,10 @@ public:
   /// @param displacement  [nodes][dim] of nodes(), m
   /// @param force         [nodes][dim] receives them
   void compute(double time, std::span<const double> displacement, std::span<double> force) const;
+  /// Sum of the forces of one of them, N; arguments as of compute().
+  Vec<dim> resultant(std::size_t load, double time, std::span<const double> displacement) const;
+  /// How many nodes one of them acts on.
+  std::size_t num_nodes(std::size_t load) const { return num_nodes_[load]; }
 
 private:
   struct Share { // of a node in a load: the force is weight times the value
@@ -40,7 +44,11 @@ private:
     FaceCorners<dim> corners; // of the reference configuration
   };
 
+  void add(std::size_t load, double time, std::span<const double> displacement,
+           std::span<double> force) const;
+
   std::vector<LoadSetting<dim>> settings_;
+  std::vector<std::size_t> num_nodes_; // [settings]
   Space space_ = Space::plane;
   std::vector<std::uint32_t> nodes_;
   std::vector<std::vector<Share>> shares_;  // [settings]

@@ -21,16 +21,17 @@ struct StateParts {
   template <int dim, class Visit> static void of(Engine<dim>& engine, Visit& visit) {
     auto& [mesh, settings, boundary, loads, absorbing, walls, material_of, density_factor, alpha,
            removed, active, patches, groups, group_of, place, reference, mass, true_mass,
-           squared_masses, moved, time_step, step, changed_at, displacement, velocity,
-           initial_displacement, origin, support, force, parts, forces_are_current, prescribed,
-           scratch, interface_rows, interface_force, element_work, patch_work, patch_sums, sums,
-           load_force, reactions, wall_forces, damped_work, external_work, interface_work,
-           unbalanced_force, peak] = engine;
+           squared_masses, moved, time_step, step, moved_since, loaded_since, displacement,
+           velocity, initial_displacement, origin, support, force, parts, forces_are_current,
+           prescribed, scratch, interface_rows, interface_force, element_work, patch_work,
+           patch_sums, sums, load_force, reactions, wall_forces, damped_work, external_work,
+           interface_work, unbalanced_force, peak] = engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);
     visit("velocity", velocity);
-    visit("changed_at", changed_at);
+    visit("moved_since", moved_since);
+    visit("loaded_since", loaded_since);
     visit("initial_displacement", initial_displacement);
     visit("origin", origin);
     visit("support", support);

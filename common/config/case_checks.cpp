@@ -1,4 +1,5 @@
 #include "common/config/case_reader.hpp"
+#include "common/config/key_checks.hpp"
 
 #include "common/config/schema.hpp"
 #include "common/nearest.hpp"
@@ -13,11 +14,10 @@ namespace {
 using nlohmann::json;
 using std::string;
 
-class Checks {
+class Checks : private KeyChecks {
 public:
   Checks(json& settings, const Document& document, Problems& problems)
-      : settings_(settings), document_(document), problems_(problems),
-        is_plane_(settings["case"]["dimension"] == 2) {
+      : KeyChecks(settings, problems), settings_(settings), document_(document) {
     for (const auto& [name, participant] : settings["participants"].items())
       participants_.push_back(name);
     for (const json& coupling : settings["couplings"])
@@ -50,7 +50,7 @@ private:
         check_material(fmt::format("{}.materials[{}]", key, k), participant["materials"][k],
                        participant["materials"]);
       check_materials(key, participant, problems_);
-      check_probes(key, participant["probes"]);
+      check_series(key, participant, {"probes"}, {"cracks", "boundary", "loads", "clusters"});
       check_tools(key, participant["tools"]);
       check_loads(key + ".loads", participant["loads"]);
       check_clusters(key + ".clusters", participant["clusters"]);
@@ -61,6 +61,8 @@ private:
     } else {
       check_mesh(key + ".mesh", participant["mesh"], settings_["case"], problems_);
       check_solids(key, settings_, problems_);
+      check_elements(key, settings_, problems_);
+      check_series(key, participant, {"probes", "walls"}, {"boundary", "loads"});
     }
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
@@ -164,20 +166,14 @@ private:
     bonds["gap_tolerance"] = nullptr;
   }
 
-  static std::vector<string> given(const json& table, const std::vector<string>& names) {
-    std::vector<string> found;
-    for (const string& name : names)
-      if (!table[name].is_null())
-        found.push_back(name);
-    return found;
-  }
-
-  /// Each has a file of its own, and so have the cracks.
-  void check_probes(const string& participant, const json& probes) {
-    std::set<string> names = {"cracks", "boundary", "loads", "clusters"};
-    for (std::size_t k = 0; k < probes.size(); ++k)
-      check_name(fmt::format("{}.probes[{}]", participant, k), probes[k]["name"],
-                 "time series of " + participant, names);
+  /// Each has a file of its own, which is named after it.
+  /// @param names  of the files that there are anyway
+  void check_series(const string& participant, const json& table, const std::vector<string>& lists,
+                    std::set<string> names) {
+    for (const string& list : lists)
+      for (std::size_t k = 0; k < table[list].size(); ++k)
+        check_name(fmt::format("{}.{}[{}]", participant, list, k), table[list][k]["name"],
+                   "time series of " + participant, names);
     for (const string& name : names) {
       const string file = participant.substr(participant.find('.') + 1) + "_" + name;
       for (const auto* others : {&participants_, &couplings_})
@@ -250,25 +246,11 @@ private:
     }
   }
 
-  /// Bonds carry it, and elements have none.
+  /// Bonds carry it.
   void check_in_situ_stress(const string& participant, const json& table) {
     const string key = participant + ".in_situ_stress";
-    const json& stress = table["in_situ_stress"];
-    const bool is_uniform = !stress["stress"].is_null();
-    if (is_uniform != stress["K0"].is_null())
-      problems_.add(key, key + " needs either stress or K0.", "give one of them.");
-    const std::size_t count = is_plane_ ? 3 : 6;
-    if (is_uniform && stress["stress"].size() != count)
-      problems_.add(key + ".stress",
-                    fmt::format("{}.stress has {} numbers, but case.dimension = {}.", key,
-                                stress["stress"].size(), is_plane_ ? 2 : 3),
-                    is_plane_ ? "give xx yy xy." : "give xx yy zz yz xz xy.");
-    if (!stress["K0"].is_null() && stress["surface"].is_null())
-      problems_.add(key + ".surface", key + ".surface is missing.",
-                    "give the height of the ground, where depth is zero.");
-    if (!stress["K0"].is_null() && table["gravity"].is_null())
-      problems_.add(key + ".K0", key + ".K0 is given, but there is no gravity.",
-                    "give gravity, or stress instead of K0.");
+    check_stress(key, table["in_situ_stress"], is_plane_ ? "xx yy xy" : "xx yy zz yz xz xy",
+                 table["gravity"]);
     if (table["bonds"]["kind"] == "none" || table["material"]["law"] == "hertz_mindlin")
       problems_.add(key, key + " is given, but there are no bonds that could carry it.",
                     "leave it out, or give bonds.");
@@ -278,7 +260,7 @@ private:
     for (const json& coupling : settings_["couplings"])
       for (const json& member : coupling["between"])
         if (member == name)
-          problems_.add(key, key + " is given, but elements have no stress at the start.",
+          problems_.add(key, key + " is given, but coupled bodies begin without stress.",
                         "leave it out, or the coupling.");
   }
 
@@ -319,86 +301,12 @@ private:
                       "give one of them another name.");
   }
 
-  void check_rotation(const string& key, const json& tool) {
-    const json& rotation = tool["rotation"];
-    const bool has_axis = !rotation.is_null() && !rotation["axis"].is_null();
-    if (!rotation.is_null())
-      check_one_of(key + ".rotation", rotation, "rate", "rates");
-    if (is_plane_ && has_axis)
-      problems_.add(key + ".rotation.axis",
-                    key + ".rotation.axis is given, but in 2D everything turns in the plane.",
-                    "leave it out; a positive rate turns x towards y.");
-    const bool turns = !rotation.is_null() || !tool.value("free_rotation", json()).is_null();
-    if (!is_plane_ && turns && !has_axis)
-      problems_.add(key + ".rotation.axis", key + ".rotation.axis is missing.",
-                    "give the direction of the axis, for example [0.0, 0.0, 1.0].");
-  }
-
-  /// Two ways to give one quantity.
-  void check_one_of(const string& key, const json& table, const string& first,
-                    const string& second) {
-    if (!table[first].is_null() && !table[second].is_null())
-      problems_.add(
-          key + "." + second, fmt::format("{} has both {} and {}.", key, first, second),
-          fmt::format("give {} for one value, or {} for a table of times.", first, second));
-  }
-
-  void check_boundary(const string& key, const json& boundary) {
-    if (boundary.contains("tag") && boundary["tag"].is_null() == boundary["box"].is_null())
-      problems_.add(key,
-                    fmt::format("{} has {} tag {} box.", key,
-                                boundary["tag"].is_null() ? "neither" : "both",
-                                boundary["tag"].is_null() ? "nor" : "and"),
-                    "give the tag of a boundary, or a box around points.");
-    check_components(key + ".components", boundary["components"]);
-    const string motion = boundary["motion"];
-    const bool has_table = !boundary.value("velocities", json()).is_null();
-    check_keys_of(key, boundary, "motion", motion,
-                  {{"velocity", {has_table ? "velocities" : "velocity"}},
-                   {"hann", {"amplitude", "duration"}}});
-    if (!boundary.contains("velocities")) // of particles only
-      return;
-    check_one_of(key, boundary, "velocity", "velocities");
-    if (motion != "velocity" && has_table)
-      problems_.add(key + ".velocities",
-                    fmt::format("{0}.velocities is given, but motion = \"{1}\" does not use it.",
-                                key, motion),
-                    "leave it out, or give motion = \"velocity\".");
-    check_rotation(key, boundary);
-  }
-
   void check_initial(const string& key, const json& initial) {
     check_components(key + ".component", json::array({initial["component"]}));
     check_components(key + ".axis", json::array({initial["axis"]}));
     check_keys_of(
         key, initial, "kind", initial["kind"],
         {{"velocity", {"velocity"}}, {"pulse", {"amplitude", "center", "length", "wave_speed"}}});
-  }
-
-  /// Each choice of a key needs its own keys and none of the others'.
-  void check_keys_of(const string& key, const json& table, const string& choice_key,
-                     const string& choice, const std::map<string, std::set<string>>& keys) {
-    const auto own = keys.find(choice);
-    const std::set<string> keys_of_choice = own == keys.end() ? std::set<string>() : own->second;
-    for (const auto& [other, names] : keys)
-      for (const string& name : names) {
-        const string full = key + "." + name;
-        if (other == choice && table[name].is_null())
-          problems_.add(
-              full, fmt::format("{} is missing.", full),
-              fmt::format("{} = \"{}\" needs {}.", choice_key, choice, fmt::join(names, ", ")));
-        if (other != choice && !keys_of_choice.contains(name) && !table[name].is_null())
-          problems_.add(full,
-                        fmt::format("{} is given, but {} = \"{}\" does not use it.", full,
-                                    choice_key, choice),
-                        fmt::format("leave it out, or give {} = \"{}\".", choice_key, other));
-      }
-  }
-
-  void check_components(const string& key, const json& components) {
-    for (const json& component : components)
-      if (is_plane_ && component == "z")
-        problems_.add(key, key + " has \"z\", but case.dimension = 2.", "give \"x\" or \"y\".");
   }
 
   void check_couplings() {
@@ -502,13 +410,6 @@ private:
           "give min below max.");
   }
 
-  void check_name(const string& key, const string& name, const string& list,
-                  std::set<string>& names) {
-    if (!names.insert(name).second)
-      problems_.add(key + ".name", fmt::format("two {} are named \"{}\".", list, name),
-                    "give each one a name of its own.");
-  }
-
   bool check_known(const string& key, const string& name, const string& what,
                    const std::vector<string>& known) {
     if (std::find(known.begin(), known.end(), name) != known.end())
@@ -529,8 +430,6 @@ private:
 
   json& settings_;
   const Document& document_;
-  Problems& problems_;
-  bool is_plane_;
   std::vector<string> participants_, couplings_;
 };
 

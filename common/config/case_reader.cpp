@@ -71,8 +71,12 @@ private:
     if (entry.type == Type::list) {
       json members = json::array();
       for (const json& member : value)
-        members.push_back(read_table(inside(entry), fmt::format("{}[{}]", key, members.size()),
-                                     kind, &member, label(entry, key)));
+        members.push_back(
+            read_table(inside(entry), fmt::format("{}[{}]", key, members.size()),
+                       entry.path == "stages[].changes"
+                           ? kind_of_change(member, document_.values.value("participants", json()))
+                           : kind,
+                       &member, label(entry, key)));
       return members;
     }
     if (entry.is_table())
@@ -198,6 +202,16 @@ private:
 };
 
 } // namespace
+
+string kind_of_change(const json& change, const json& participants) {
+  const json name = change.value("participant", json());
+  if (participants.is_object())
+    for (const auto& [other, participant] : participants.items())
+      if ((name == other || (name.is_null() && participants.size() == 1)) &&
+          participant.is_object() && participant.value("kind", json()) == "fem")
+        return "fem";
+  return "dem";
+}
 
 json read_settings(const Document& document, const std::filesystem::path& folder,
                    Problems& problems) {

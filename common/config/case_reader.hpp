@@ -15,6 +15,10 @@ namespace kerf::config {
 nlohmann::json read_settings(const Document& document, const std::filesystem::path& folder,
                              Problems& problems);
 
+/// The kind of participant that a change of a stage is for: of the one that it names, or of the
+/// only one; "dem" when that cannot be told.
+std::string kind_of_change(const nlohmann::json& change, const nlohmann::json& participants);
+
 /// Finds what is wrong with settings that are complete: names of participants that are not there,
 /// keys that exclude or need one another, vectors along axes that a plane does not have.
 /// Also fills in the kinds of measures that are their names.
@@ -35,6 +39,15 @@ void check_solids(const std::string& participant, nlohmann::json& settings, Prob
 /// @param case_settings  the table [case]
 void check_mesh(const std::string& key, const nlohmann::json& mesh,
                 const nlohmann::json& case_settings, Problems& problems);
+
+/// The part of check_settings() about what acts on the elements of one participant.
+/// @param participant  "participants.far"
+void check_elements(const std::string& participant, const nlohmann::json& settings,
+                    Problems& problems);
+
+/// The part of it about a list of loads, of a participant or of a stage.
+void check_node_loads(const std::string& list, const nlohmann::json& loads,
+                      const nlohmann::json& settings, Problems& problems);
 
 /// The part of check_settings() about stages, stop conditions and the end of the run.
 void check_stages(const nlohmann::json& settings, Problems& problems);

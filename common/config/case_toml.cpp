@@ -27,7 +27,9 @@ string commented(const string& text) {
 /// Writes settings in the order of the table of keys, plain or with everything there is to know.
 class Writer {
 public:
-  explicit Writer(bool with_notes) : with_notes_(with_notes) {}
+  /// @param participants  of the case, whose kinds changes of stages have
+  Writer(bool with_notes, const json& participants)
+      : with_notes_(with_notes), participants_(participants) {}
 
   /// @param table   pattern of the table
   /// @param header  its name in the file: "participants.rock.material"
@@ -78,13 +80,15 @@ private:
     } else if (key.type == Type::list) {
       for (const json& member : value) {
         begin_table(fmt::format("[[{}]]", header), key.doc);
-        write_table(inside(key), header, kind, member);
+        write_table(inside(key), header,
+                    key.path == "stages[].changes" ? kind_of_change(member, participants_) : kind,
+                    member);
       }
     } else if (!value.is_null()) {
       begin_table(fmt::format("[{}]", header), key.doc);
       write_table(inside(key), header, kind, value);
     } else if (with_notes_) { // the case does without it
-      Writer table(true);
+      Writer table(true, participants_);
       table.begin_table(fmt::format("[{}]", header), key.doc);
       table.write_table(inside(key), header, kind, example_table(inside(key), kind));
       text += '\n' + commented(table.text);
@@ -100,6 +104,7 @@ private:
   }
 
   bool with_notes_;
+  const json& participants_;
 };
 
 /// Settings made of the examples and defaults of the table of keys.
@@ -111,7 +116,10 @@ json example_table(const string& table, const string& kind) {
     if (key->type == Type::named_tables)
       value = {{"rock", example_table(inside(*key), "dem")},
                {"far", example_table(inside(*key), "fem")}};
-    else if (key->type == Type::list)
+    else if (key->path == "stages[].changes") {
+      value = {example_table(inside(*key), "dem"), example_table(inside(*key), "fem")};
+      value[1]["participant"] = "far";
+    } else if (key->type == Type::list)
       value = json::array({example_table(inside(*key), kind)});
     else if (key->type == Type::table || (key->is_table() && is_live))
       value = example_table(inside(*key), kind);
@@ -124,14 +132,15 @@ json example_table(const string& table, const string& kind) {
 } // namespace
 
 string settings_toml(const json& settings) {
-  Writer writer(false);
+  Writer writer(false, settings.at("participants"));
   writer.write_table("", "", "", settings);
   return writer.text;
 }
 
 string reference_toml() {
-  Writer writer(true);
-  writer.write_table("", "", "", example_table("", ""));
+  const json example = example_table("", "");
+  Writer writer(true, example.at("participants"));
+  writer.write_table("", "", "", example);
   return "# Every key that a case may have. After each value: its unit, its default and what is "
          "allowed.\n# Keys that are commented out have no default, and this case does without "
          "them.\n# This file is generated from the table of keys (common/config/schema.cpp); a "

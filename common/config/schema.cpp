@@ -109,8 +109,9 @@ std::vector<Key> coupling_and_measure_keys() {
 const std::vector<Key>& schema() {
   static const std::vector<Key> all = [] {
     std::vector<Key> keys = case_keys();
-    for (const auto& part : {stop_keys("case.stop"), participants_key(), particle_keys(),
-                             mesh_keys(), coupling_and_measure_keys(), stage_keys(particle_keys())})
+    for (const auto& part :
+         {stop_keys("case.stop"), participants_key(), particle_keys(), mesh_keys(),
+          coupling_and_measure_keys(), stage_keys(particle_keys(), mesh_keys())})
       keys.insert(keys.end(), part.begin(), part.end());
     return keys;
   }();

@@ -58,7 +58,7 @@ struct Allowed {
 /// One key. `path` is its pattern: "participants.*.material.density", "couplings[].name".
 struct Key {
   std::string path;
-  std::string kind; // "dem", "fem": only in participants of that kind; empty: in any
+  std::string kind; // "dem", "fem": only of participants of that kind; empty: of any
   Type type;
   std::string unit;     // "kg/m³"; empty: none
   std::string standard; // the default as JSON; "null": not given; empty: required
@@ -77,7 +77,7 @@ const std::vector<Key>& schema();
 
 /// The keys directly inside a table.
 /// @param table  pattern: "", "case", "participants.*", "couplings[]"
-/// @param kind   of the participant around it; empty outside of participants
+/// @param kind   of the participant that it belongs to; empty where it is of the whole case
 std::vector<const Key*> keys_of(std::string_view table, std::string_view kind);
 
 /// The pattern of the tables that a table-like key holds: "couplings[]", "participants.*", "case".

@@ -115,19 +115,23 @@ std::vector<Key> load_keys() {
   };
 }
 
-std::vector<Key> in_situ_keys() {
+std::vector<Key> in_situ_keys(const std::string& kind) {
   using enum Type;
+  const bool dem = kind == "dem";
+  const std::string key = "participants.*.in_situ_stress";
   return {
-      {"participants.*.in_situ_stress", "dem", optional_table, "", none, anything, "in-situ stress",
-       "stress that the bonds have at the start, in equilibrium"},
-      {"participants.*.in_situ_stress.stress", "dem", numbers, "Pa", none, anything,
-       "[-5e6, -10e6, 0.0]",
-       "its mean: xx yy xy, in 3D xx yy zz yz xz xy; compression is negative"},
-      {"participants.*.in_situ_stress.K0", "dem", number, "", none, in(from_zero), "0.5",
+      {key, kind, optional_table, "", none, anything, "in-situ stress",
+       "stress that the body has at the start, in equilibrium"},
+      {key + ".stress", kind, numbers, "Pa", none, anything,
+       dem ? "[-5e6, -10e6, 0.0]" : "[-5e6, -10e6, -3e6, 0.0]",
+       dem ? "its mean: xx yy xy, in 3D xx yy zz yz xz xy; compression is negative"
+           : "the stress everywhere: xx yy zz xy, in 3D xx yy zz yz xz xy; compression is "
+             "negative"},
+      {key + ".K0", kind, number, "", none, in(from_zero), "0.5",
        "instead of stress: the horizontal over the vertical one, which is rho g depth"},
-      {"participants.*.in_situ_stress.surface", "dem", number, "m", none, anything, "100.0",
+      {key + ".surface", kind, number, "m", none, anything, "100.0",
        "with K0 the height of the ground, against gravity, where depth is zero"},
-      {"participants.*.in_situ_stress.overburden", "dem", number, "Pa", "0.0", in(from_zero), "1e6",
+      {key + ".overburden", kind, number, "Pa", "0.0", in(from_zero), "1e6",
        "with K0 the vertical pressure on the ground"},
   };
 }
@@ -149,9 +153,6 @@ std::vector<Key> motion_keys(const std::string& kind) {
   const bool dem = kind == "dem";
   const std::string everywhere = "[[-1.0, -1.0], [1.0, 1.0]]";
   const std::vector<Key> particle_motion = {
-      {"participants.*.boundary[].velocities", kind, vectors_of_time, "s, m/s", none, anything,
-       "[[0.0, 0.0, 0.0], [1e-5, 1.0, 0.0]]",
-       "instead of velocity: a table of it, linear between its times and constant beyond"},
       {"participants.*.boundary[].rotation", kind, optional_table, "", none, anything, "rotation",
        "the rotation of each particle about its own centre"},
       {"participants.*.boundary[].rotation.axis", kind, vector, "", none, anything,
@@ -171,11 +172,17 @@ std::vector<Key> motion_keys(const std::string& kind) {
        dem ? one_of({"x", "y", "z", "rotation"}) : one_of({"x", "y", "z"}), R"(["x"])",
        "the components that it prescribes; every displacement when not given"},
       {"participants.*.boundary[].motion", kind, text, "", required,
-       one_of({"fixed", "velocity", "hann"}), dem ? R"("hann")" : R"("fixed")",
+       dem ? one_of({"fixed", "velocity", "hann"})
+           : one_of({"fixed", "symmetry", "velocity", "displacement", "hann"}),
+       dem ? R"("hann")" : R"("fixed")",
        dem ? "the motion: fixed, a velocity, or one hann pulse of displacement"
-           : "the motion: fixed, a constant velocity, or one hann pulse of displacement"},
+           : "the motion: fixed, fixed along the normal of a plane of symmetry, a velocity, a "
+             "displacement, or one hann pulse of it"},
       {"participants.*.boundary[].velocity", kind, vector, "m/s", none, anything, "[1.0, 0.0]",
        "the velocity of motion = \"velocity\""},
+      {"participants.*.boundary[].velocities", kind, vectors_of_time, "s, m/s", none, anything,
+       "[[0.0, 0.0, 0.0], [1e-5, 1.0, 0.0]]",
+       "instead of velocity: a table of it, linear between its times and constant beyond"},
       {"participants.*.boundary[].amplitude", kind, vector, "m", none, anything, "[1e-8, 0.0]",
        "the largest displacement of motion = \"hann\"", dem},
       {"participants.*.boundary[].duration", kind, number, "s", none, in(above_zero), "1e-5",
@@ -204,12 +211,20 @@ std::vector<Key> motion_keys(const std::string& kind) {
       {"participants.*.initial[].axis", kind, text, "", R"("x")", one_of({"x", "y", "z"}), R"("x")",
        "the axis along which the pulse travels"},
   };
-  if (dem)
-    keys.insert(keys.begin() + 5, particle_motion.begin(), particle_motion.end());
-  else
+  const auto after_velocities = keys.begin() + 6;
+  if (dem) {
+    keys.insert(after_velocities, particle_motion.begin(), particle_motion.end());
+  } else {
+    keys.insert(
+        after_velocities,
+        {"participants.*.boundary[].displacements", kind, vectors_of_time, "s, m", none, anything,
+         "[[0.0, 0.0, 0.0], [1e-5, 1e-6, 0.0]]",
+         "the displacement of motion = \"displacement\", from zero: a table, linear between "
+         "its times and constant beyond"});
     keys.insert(keys.begin() + 1,
                 {"participants.*.boundary[].tag", kind, text, "", none, anything, R"("right")",
                  "the tag of the boundary that it holds; exactly one of tag and box", live});
+  }
   return keys;
 }
 
@@ -218,11 +233,12 @@ std::vector<Key> motion_keys(const std::string& kind) {
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), material_keys(),
                  model_of_particles(), tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(),
-                 in_situ_keys(), mass_scaling_keys(), watch_of_particles()});
+                 in_situ_keys("dem"), mass_scaling_keys(), watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {
-  return joined({participant_keys("fem"), element_keys(), solid_keys(), motion_keys("fem")});
+  return joined({participant_keys("fem"), element_keys(), solid_keys(), motion_keys("fem"),
+                 action_keys(), in_situ_keys("fem")});
 }
 
 } // namespace kerf::config

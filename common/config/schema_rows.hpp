@@ -36,6 +36,8 @@ std::vector<Key> mesh_keys();
 std::vector<Key> element_keys();
 /// Those of what they are made of.
 std::vector<Key> solid_keys();
+/// Those of what acts on them beside prescribed motions, and of their probes.
+std::vector<Key> action_keys();
 /// Those of its materials; of particles only.
 std::vector<Key> material_keys();
 /// Those of its rigid tools; of particles only.
@@ -43,8 +45,8 @@ std::vector<Key> tool_keys();
 
 /// The keys of a list of stop conditions.
 std::vector<Key> stop_keys(const std::string& key);
-/// The keys of stages, some of which are keys of particles again.
-std::vector<Key> stage_keys(const std::vector<Key>& particles);
+/// The keys of stages, some of which are keys of particles or elements again.
+std::vector<Key> stage_keys(const std::vector<Key>& particles, const std::vector<Key>& elements);
 /// Those of its rigid clusters.
 std::vector<Key> cluster_keys();
 

@@ -19,7 +19,6 @@ std::vector<Key> moved(const std::vector<Key>& from, const std::string& table,
       continue;
     Key copy = key;
     copy.path = to + rest;
-    copy.kind.clear();
     if (copy.path == to && copy.type == Type::table) {
       copy.type = Type::optional_table;
       copy.standard = none;
@@ -46,14 +45,16 @@ std::vector<Key> stop_keys(const std::string& key) {
        one_of({"unbalanced_force", "kinetic_ratio", "cracks", "strain", "stress", "displacement",
                "force"}),
        R"("unbalanced_force")",
-       "what is looked at: a ratio of the body, the number of cracks, a probe, or a tool"},
+       "what is looked at: a ratio of the body, the number of cracks, a probe, a tool, or a wall"},
       {key + "[].probe", "", text, "", none, anything, R"("middle")",
-       "the probe of quantity = \"strain\" or \"stress\""},
+       "the probe of quantity = \"strain\" or \"stress\", of elements also of \"displacement\""},
       {key + "[].tool", "", text, "", none, anything, R"("blade")",
-       "the tool of quantity = \"displacement\" or \"force\""},
+       "the tool of quantity = \"displacement\" or \"force\" of particles"},
+      {key + "[].wall", "", text, "", none, anything, R"("anvil")",
+       "the wall of quantity = \"force\" of elements"},
       {key + "[].component", "", text, "", none,
        one_of({"x", "y", "z", "xx", "yy", "zz", "yz", "xz", "xy"}), R"("x")",
-       "the component: an axis of a tool, a pair of axes of a probe"},
+       "the component: an axis of a motion or a force, a pair of axes of a strain or a stress"},
       {key + "[].above", "", number, "", none, anything, "0.0",
        "the bound that is met from above, in SI units"},
       {key + "[].below", "", number, "", none, anything, "1e-3",
@@ -65,7 +66,7 @@ std::vector<Key> stop_keys(const std::string& key) {
   };
 }
 
-std::vector<Key> stage_keys(const std::vector<Key>& particles) {
+std::vector<Key> stage_keys(const std::vector<Key>& particles, const std::vector<Key>& elements) {
   using enum Type;
   const std::string change = "stages[].changes[]";
   std::vector<Key> keys = {
@@ -84,21 +85,29 @@ std::vector<Key> stage_keys(const std::vector<Key>& particles) {
        "what changes at its beginning; everything else stays"},
       {change + ".participant", "", text, "", none, anything, R"("rock")",
        "the participant that it changes; the only one when not given", live},
-      {change + ".gravity", "", vector, "m/s²", none, anything, "[0.0, -9.81]",
-       "the new gravity of its particles"},
-      {change + ".friction", "", number, "", none, in(from_zero), "0.5",
+      {change + ".gravity", "", vector, "m/s²", none, anything, "[0.0, -9.81]", "the new gravity"},
+      {change + ".friction", "dem", number, "", none, in(from_zero), "0.5",
        "the new friction of contacts without a bond"},
-      {change + ".bond_gap", "", number, "", none, in(from_zero), "1e-3",
+      {change + ".bond_gap", "dem", number, "", none, in(from_zero), "1e-3",
        "the largest gap that is bonded now, over the sum of the two radii; no new bonds when not "
        "given"},
       {change + ".release", "", flag, "", "false", anything, "false",
-       "whether all prescribed motions of particles end; a boundary given here does so, too"},
+       "whether all prescribed motions end; a boundary given here does so, too"},
+      {change + ".unload", "fem", flag, "", "false", anything, "false",
+       "whether all loads end; a load given here does so, too"},
+      {change + ".remove", "fem", texts, "", none, anything, R"(["excavation"])",
+       "regions of the mesh whose elements are taken out"},
+      {change + ".reset_displacement", "fem", flag, "", "false", anything, "false",
+       "whether displacements of supports and probes count from here"},
   });
   add(moved(particles, "participants.*.damping", change + ".damping"));
   add(moved(particles, "participants.*.boundary", change + ".boundary"));
   add(moved(particles, "participants.*.tools", change + ".tools",
             {"[].name", "[].velocity", "[].velocities", "[].rotation", "[].servo", "[].free",
              "[].free_rotation"}));
+  add(moved(elements, "participants.*.damping", change + ".damping"));
+  add(moved(elements, "participants.*.boundary", change + ".boundary"));
+  add(moved(elements, "participants.*.loads", change + ".loads"));
   return keys;
 }
 

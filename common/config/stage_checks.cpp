@@ -1,5 +1,6 @@
 // What can be wrong with stages and stop conditions beyond the types of their values.
 #include "common/config/case_reader.hpp"
+#include "common/config/key_checks.hpp"
 #include "common/config/value_types.hpp"
 #include "common/nearest.hpp"
 
@@ -15,10 +16,10 @@ namespace {
 using nlohmann::json;
 using std::string;
 
-class StageChecks {
+class StageChecks : private KeyChecks {
 public:
   StageChecks(const json& settings, Problems& problems)
-      : settings_(settings), problems_(problems) {}
+      : KeyChecks(settings, problems), settings_(settings) {}
 
   void run() {
     const json& stages = settings_["stages"];
@@ -88,21 +89,25 @@ private:
 
   void check_quantity(const string& key, const json& condition, const json& participant) {
     const string quantity = condition["quantity"];
-    if (participant["kind"] != "dem") {
-      problems_.add(key, fmt::format("{} is of a participant without particles.", key),
-                    "name a participant of kind dem.");
+    const bool of_elements = participant["kind"] == "fem";
+    const std::vector<string> known = {"kinetic_ratio", "stress", "displacement", "force"};
+    if (of_elements && std::find(known.begin(), known.end(), quantity) == known.end()) {
+      problems_.add(key + ".quantity",
+                    fmt::format("{}.quantity = \"{}\" is not one of elements.", key, quantity),
+                    fmt::format("give one of {}.", fmt::join(known, ", ")));
       return;
     }
-    const bool of_probe = quantity == "strain" || quantity == "stress";
-    const bool of_tool = quantity == "displacement" || quantity == "force";
-    check_named(key, condition, "probe", of_probe, participant["probes"]);
-    check_named(key, condition, "tool", of_tool, participant["tools"]);
-    check_component(key, condition, of_probe, of_tool);
+    const bool of_pair = quantity == "strain" || quantity == "stress";
+    const bool of_motion = quantity == "displacement", of_force = quantity == "force";
+    check_named(key, condition, "probe", of_pair || (of_elements && of_motion), participant);
+    check_named(key, condition, "tool", !of_elements && (of_motion || of_force), participant);
+    check_named(key, condition, "wall", of_elements && of_force, participant);
+    check_component(key, condition, of_pair, of_motion || of_force, of_elements);
   }
 
-  /// A probe or a tool is named where the quantity has one, and it is there.
+  /// A probe, a tool or a wall is named where the quantity has one, and it is there.
   void check_named(const string& key, const json& condition, const char* what, bool is_needed,
-                   const json& list) {
+                   const json& participant) {
     const json& name = condition[what];
     if (is_needed == name.is_null())
       problems_.add(
@@ -111,7 +116,8 @@ private:
           fmt::format("quantity = {} {}.", shown(condition["quantity"]),
                       is_needed ? fmt::format("needs the name of a {}", what) : "does not use it"));
     if (is_needed && !name.is_null())
-      check_member(fmt::format("{}.{}", key, what), name, what, list);
+      check_member(fmt::format("{}.{}", key, what), name, what,
+                   participant[fmt::format("{}s", what)]);
   }
 
   void check_member(const string& key, const json& name, const char* what, const json& list) {
@@ -128,14 +134,16 @@ private:
                                   : "did you mean " + meant + "?");
   }
 
-  void check_component(const string& key, const json& condition, bool of_probe, bool of_tool) {
-    const bool is_plane = settings_["case"]["dimension"] == 2;
-    std::vector<string> allowed;
-    if (of_probe)
-      allowed = is_plane ? std::vector<string>{"xx", "yy", "xy"}
-                         : std::vector<string>{"xx", "yy", "zz", "yz", "xz", "xy"};
-    if (of_tool)
-      allowed = is_plane ? std::vector<string>{"x", "y"} : std::vector<string>{"x", "y", "z"};
+  void check_component(const string& key, const json& condition, bool of_pair, bool of_axis,
+                       bool of_elements) {
+    using Words = std::vector<string>;
+    Words allowed;
+    if (of_pair)
+      allowed = !is_plane_    ? Words{"xx", "yy", "zz", "yz", "xz", "xy"}
+                : of_elements ? Words{"xx", "yy", "zz", "xy"}
+                              : Words{"xx", "yy", "xy"};
+    if (of_axis)
+      allowed = is_plane_ ? Words{"x", "y"} : Words{"x", "y", "z"};
     const json& component = condition["component"];
     if (allowed.empty() && !component.is_null())
       problems_.add(key + ".component", key + ".component is given.",
@@ -163,9 +171,10 @@ private:
     const json* participant = participant_of(key, change);
     if (participant == nullptr)
       return;
-    if ((*participant)["kind"] != "dem") {
-      problems_.add(key, fmt::format("{} is of a participant without particles.", key),
-                    "name a participant of kind dem.");
+    for (std::size_t k = 0; k < change["boundary"].size(); ++k)
+      check_boundary(fmt::format("{}.boundary[{}]", key, k), change["boundary"][k]);
+    if ((*participant)["kind"] == "fem") {
+      check_node_loads(key + ".loads", change["loads"], settings_, problems_);
       return;
     }
     if (!change["bond_gap"].is_null() && !has_springs(*participant))
@@ -178,7 +187,6 @@ private:
   }
 
   const json& settings_;
-  Problems& problems_;
   std::set<string> names_; // of all conditions: the summary tells them apart by it
 };
 

@@ -25,7 +25,7 @@ void Broker::require_stages() const {
     throw RunError(
         ErrorKind::bad_input, key,
         fmt::format("participant \"{}\" ({}) has no stages or stop conditions\nleave them "
-                    "out, or use kerf-dem",
+                    "out, or use kerf-dem or kerf-fem",
                     m.name, m.program));
 }
 

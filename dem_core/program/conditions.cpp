@@ -99,14 +99,8 @@ template <int dim>
 std::optional<Met> find_met(std::span<const Condition> conditions, std::uint64_t step,
                             std::uint64_t begin, const Engine<dim>& engine,
                             std::span<const Probe<dim>> probes) {
-  for (const Condition& c : conditions) {
-    if (step % c.every != 0 || static_cast<double>(step - begin) * engine.time_step() < c.after)
-      continue;
-    const double value = value_of(c, engine, probes);
-    if ((c.above && value > *c.above) || (c.below && value < *c.below))
-      return Met{c.name, value};
-  }
-  return std::nullopt;
+  return kerf::find_met(conditions, step, begin, engine.time_step(),
+                        [&](const Condition& c) { return value_of(c, engine, probes); });
 }
 
 #define KERF_INSTANTIATE(dim)                                                                      \

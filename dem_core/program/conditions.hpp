@@ -1,6 +1,7 @@
-// What ends a run, or a stage of it, before its time: a quantity that has passed a bound.
+// The stop conditions of a case: what of the particles is compared with a bound.
 #pragma once
 
+#include "common/stop_condition.hpp"
 #include "dem_core/engine.hpp"
 #include "dem_core/probe.hpp"
 #include "dem_core/program/settings_node.hpp"
@@ -23,21 +24,7 @@ enum class Quantity {
   force,            // on a tool along an axis, N
 };
 
-struct Condition {
-  std::string name;
-  Quantity quantity = Quantity::unbalanced_force;
-  std::size_t index = 0; // of the probe or tool
-  int component = 0;     // of its stress, strain or vector
-  std::optional<double> above, below;
-  double after = 0.0;      // from the beginning of the run or stage, s
-  std::uint64_t every = 1; // steps from one look to the next
-};
-
-/// A condition that is met, with its value.
-struct Met {
-  std::string name;
-  double value = 0.0;
-};
+using Condition = StopCondition<Quantity>;
 
 /// @param list  conditions of a case or a stage, null for none
 /// @throws coupler::SettingsError for a probe, a tool or a component that is not there

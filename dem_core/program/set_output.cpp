@@ -8,12 +8,6 @@ namespace kerf::dem {
 
 namespace {
 
-void add_axes(std::vector<Column>& columns, const std::string& name, const char* unit,
-              std::string_view axes) {
-  for (const char axis : axes)
-    columns.push_back({name + "_" + axis, unit});
-}
-
 template <int dim> std::vector<Column> boundary_columns() {
   const std::string_view axes = std::string_view("xyz").substr(0, dim);
   std::vector<Column> columns = {

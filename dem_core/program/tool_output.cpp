@@ -8,16 +8,12 @@ namespace {
 
 template <int dim> std::vector<Column> columns() {
   std::vector<Column> columns = {{"step", "1"}, {"time", "s"}};
-  const auto add = [&](const std::string& name, const char* unit, std::string_view axes) {
-    for (const char axis : axes)
-      columns.push_back({name + "_" + axis, unit});
-  };
   const std::string_view axes = std::string_view("xyz").substr(0, dim);
-  add("position", "m", axes);
-  add("velocity", "m/s", axes);
+  add_axes(columns, "position", "m", axes);
+  add_axes(columns, "velocity", "m/s", axes);
   columns.push_back({"angle", "rad"});
-  add("force", "N", axes);
-  add("moment", "N m", dim == 2 ? "z" : "xyz");
+  add_axes(columns, "force", "N", axes);
+  add_axes(columns, "moment", "N m", dim == 2 ? "z" : "xyz");
   columns.insert(columns.end(), {{"power", "W"}, {"work", "J"}, {"contacts", "1"}});
   return columns;
 }

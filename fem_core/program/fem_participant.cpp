@@ -9,6 +9,7 @@
 #include "fem_core/program/read_materials.hpp"
 #include "fem_core/program/read_mesh.hpp"
 #include "fem_core/program/read_settings.hpp"
+#include "fem_core/program/stages.hpp"
 
 #include <omp.h>
 #include <spdlog/spdlog.h>
@@ -28,20 +29,50 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Without a coupling nobody asks for the own forces before the step is made, and integrate() has
-/// them in its one pass over the memory.
-template <int dim> class UncoupledEngine {
+/// The engine in the loop of a run: with its stages, and with looks at what becomes of the body.
+template <int dim> class SteppedEngine {
 public:
-  explicit UncoupledEngine(Engine<dim>& engine) : engine_(engine) {}
+  /// @param is_coupled  somebody asks for the own forces before the step is made; else integrate()
+  ///                    has them in its one pass over the memory
+  SteppedEngine(Engine<dim>& engine, Output<dim>& output, Stages<dim>& stages,
+                const Watch<dim>& watch, bool is_coupled)
+      : engine_(engine), output_(output), stages_(stages), watch_(watch), is_coupled_(is_coupled) {}
 
-  void motion(std::span<const std::uint32_t>, std::span<double>, std::span<double>) const {}
-  void compute_own_forces() {}
-  void own_forces(std::span<const std::uint32_t>, std::span<double>) const {}
-  void add_interface_forces(std::span<const std::uint32_t>, std::span<const double>) {}
+  void begin_stage(std::size_t stage) {
+    if (stages_.size() == 0)
+      return;
+    stages_.begin(stage);
+    output_.set_stage(stage);
+    output_.look();
+  }
+  /// The condition that the step which has just been integrated meets.
+  std::optional<Met> met(std::size_t stage, std::uint64_t begin) const {
+    return stages_.met(stage, begin, watch_);
+  }
+
+  void motion(std::span<const std::uint32_t> nodes, std::span<double> position,
+              std::span<double> velocity) const {
+    engine_.motion(nodes, position, velocity);
+  }
+  void compute_own_forces() {
+    output_.look_if_due();
+    if (is_coupled_)
+      engine_.compute_own_forces();
+  }
+  void own_forces(std::span<const std::uint32_t> nodes, std::span<double> force) const {
+    engine_.own_forces(nodes, force);
+  }
+  void add_interface_forces(std::span<const std::uint32_t> nodes, std::span<const double> force) {
+    engine_.add_interface_forces(nodes, force);
+  }
   void integrate() { engine_.integrate(); }
 
 private:
   Engine<dim>& engine_;
+  Output<dim>& output_;
+  Stages<dim>& stages_;
+  const Watch<dim>& watch_;
+  bool is_coupled_;
 };
 
 template <int dim> coupler::Declaration declare(const Mesh<dim>& mesh) {
@@ -65,7 +96,7 @@ template <int dim> coupler::Declaration declare(const Mesh<dim>& mesh) {
   }
   declaration.memory_estimate = per_element * static_cast<double>(mesh.num_elements()) +
                                 per_node * static_cast<double>(mesh.num_nodes());
-  declaration.has_checkpoints = true;
+  declaration.has_checkpoints = declaration.has_stages = true;
   return declaration;
 }
 
@@ -131,6 +162,8 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
   const std::optional<Checkpoint> checkpoint = read_restart(participant);
   const Mesh<dim> mesh = read_mesh(settings, read_period<dim>(case_settings));
   Engine<dim> engine(mesh, read_settings(settings, mesh));
+  Watch<dim> watch = read_watch(settings, mesh);
+  Stages<dim> stages(settings, participant.assignment().name, engine, watch);
   if (checkpoint)
     check(engine, *checkpoint);
   const coupler::Plan& plan = participant.declare(declare(mesh));
@@ -144,16 +177,22 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
     return;
   }
   engine.start(schedule.time_step);
-  if (checkpoint)
+  const std::size_t stage = participant.stage_before(schedule.first_step);
+  if (checkpoint) {
+    stages.adopt(stage);
     engine.restore(checkpoint->state);
-  Output<dim> output(engine, plan.weights, assignment.run_folder, assignment.name);
-  const double setup = seconds_since(begin);
-  if (plan.interfaces.empty()) {
-    UncoupledEngine<dim> uncoupled(engine);
-    coupler::run_engine(uncoupled, participant, plan, schedule, output);
-  } else {
-    coupler::run_engine(engine, participant, plan, schedule, output);
   }
+  watch.time_step = schedule.time_step;
+  const bool is_coupled = !plan.interfaces.empty();
+  Guard<dim> guard(engine, schedule.time_step, case_settings.flag("allow_unstable", false),
+                   !is_coupled);
+  Output<dim> output(engine, std::move(guard), watch, plan.weights, assignment.run_folder,
+                     assignment.name);
+  if (watch.has_stages)
+    output.set_stage(stage);
+  const double setup = seconds_since(begin);
+  SteppedEngine<dim> stepped(engine, output, stages, watch, is_coupled);
+  coupler::run_engine(stepped, participant, plan, schedule, output);
   const double total = seconds_since(begin);
   const nlohmann::json summary = {{"seconds",
                                    {{"setup", setup},

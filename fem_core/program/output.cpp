@@ -15,7 +15,7 @@
 namespace kerf::fem {
 namespace {
 
-template <int dim> std::vector<Column> history_columns() {
+template <int dim> std::vector<Column> history_columns(bool has_stages) {
   std::vector<Column> columns = {{"step", "1"},
                                  {"time", "s"},
                                  {"kinetic_energy", "J"},
@@ -25,8 +25,9 @@ template <int dim> std::vector<Column> history_columns() {
                                  {"damping_dissipation", "J"},
                                  {"external_work", "J"},
                                  {"interface_work", "J"}};
-  for (int axis = 0; axis < dim; ++axis)
-    columns.push_back({fmt::format("momentum_{}", "xyz"[axis]), "N s"});
+  add_axes(columns, "momentum", "N s", std::string_view("xyz").substr(0, dim));
+  if (has_stages)
+    columns.push_back({"stage", "1"});
   return columns;
 }
 
@@ -55,23 +56,43 @@ Cells cells_of(Shape shape) {
 } // namespace
 
 template <int dim>
-Output<dim>::Output(const Engine<dim>& engine, std::vector<double> alpha,
-                    const std::filesystem::path& run_folder, const std::string& participant)
-    : engine_(engine), alpha_(std::move(alpha)), ids_(engine.mesh().num_nodes()),
+Output<dim>::Output(const Engine<dim>& engine, Guard<dim> guard, const Watch<dim>& watch,
+                    std::vector<double> alpha, const std::filesystem::path& run_folder,
+                    const std::string& participant)
+    : engine_(engine), guard_(std::move(guard)), time_step_(watch.time_step),
+      stage_(watch.has_stages ? std::optional<std::size_t>(0) : std::nullopt),
+      alpha_(std::move(alpha)), ids_(engine.mesh().num_nodes()),
       frames_(run_folder, participant, dim, engine.step()),
-      history_(run_folder / "history" / (participant + ".csv"), history_columns<dim>(),
-               engine.step()) {
+      history_(run_folder / "history" / (participant + ".csv"),
+               history_columns<dim>(watch.has_stages), engine.step()),
+      sets_(engine, watch, run_folder, participant) {
   if (alpha_.empty())
     alpha_.assign(ids_.size(), 1.0);
   std::iota(ids_.begin(), ids_.end(), 0);
 }
 
-template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time) {
+template <int dim> void Output<dim>::look() {
   const Stopwatch stopwatch(seconds_);
-  check_finite(step, time);
+  try {
+    guard_.look();
+  } catch (const LostBody&) {
+    const std::uint64_t good = engine_.step();
+    if (last_frame_.value_or(0) < good && !engine_.first_non_finite())
+      write_state(good, static_cast<double>(good) * time_step_);
+    throw;
+  }
+}
+
+template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time) {
+  look();
+  const Stopwatch stopwatch(seconds_);
+  write_state(step, time);
+}
+
+template <int dim> void Output<dim>::write_state(std::uint64_t step, double time) {
   const Mesh<dim>& mesh = engine_.mesh();
   const std::vector<double> u = engine_.displacement(), v = engine_.velocity(),
-                            mass = engine_.mass();
+                            mass = engine_.mass(), since_reset = engine_.displacement_since_reset();
 
   std::vector<double> position(mesh.positions);
   for (std::size_t dof = 0; dof < position.size(); ++dof)
@@ -115,6 +136,9 @@ template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time
                          {"alpha", 1, std::span<const double>(alpha_)}},
         .cell_fields = {{"elastic_energy", 1, part(energy, 1)},
                         {"stress", components, part(stress, components)}}});
+    if (stage_)
+      grid.point_fields.push_back(
+          {"displacement_since_reset", dim, std::span<const double>(since_reset)});
     for (const auto& [name, values] : nodal_stress)
       grid.point_fields.push_back({name, components, std::span<const double>(values)});
     for (const auto& [name, values] : history)
@@ -122,11 +146,13 @@ template <int dim> void Output<dim>::write_frame(std::uint64_t step, double time
     first += block.size();
   }
   frames_.write(step, time, grids);
+  last_frame_ = step;
 }
 
 template <int dim> void Output<dim>::write_history(std::uint64_t step, double time) {
+  if (engine_.first_non_finite())
+    look();
   const Stopwatch stopwatch(seconds_);
-  check_finite(step, time);
   const Energies energies = engine_.energies();
   const Vec<dim> momentum = engine_.momentum();
   std::vector<double> row = {static_cast<double>(step), time,
@@ -139,18 +165,15 @@ template <int dim> void Output<dim>::write_history(std::uint64_t step, double ti
     throw std::runtime_error(
         fmt::format("the energies are not finite numbers at t = {} s (step {}); node {} is fastest",
                     time, step, fastest_node<dim>(engine_.velocity())));
+  if (stage_)
+    row.push_back(static_cast<double>(*stage_));
   history_.append(row);
+  sets_.write_history(step, time);
 }
 
 template <int dim> void Output<dim>::write_checkpoint(const std::filesystem::path& file) {
   const Stopwatch stopwatch(seconds_);
   kerf::write_checkpoint(file, {checkpoint_writer, engine_.step(), engine_.state()});
-}
-
-template <int dim> void Output<dim>::check_finite(std::uint64_t step, double time) const {
-  if (const auto node = engine_.first_non_finite())
-    throw std::runtime_error(fmt::format(
-        "the motion of node {} is not a finite number at t = {} s (step {})", *node, time, step));
 }
 
 template class Output<2>;

@@ -1,9 +1,7 @@
 #include "fem_core/program/read_materials.hpp"
 
-#include "common/nearest.hpp"
 #include "fem_core/input_error.hpp"
-
-#include <fmt/ranges.h>
+#include "fem_core/program/read_boundary.hpp"
 
 #include <functional>
 #include <numbers>
@@ -113,25 +111,6 @@ Material read_material(const Table& table, int dimension, Plane plane) {
   material.linear_viscosity = table.number("linear_viscosity", 0.0);
   material.quadratic_viscosity = table.number("quadratic_viscosity", 0.0);
   return material;
-}
-
-/// The library reports an unknown region too, but does not guess what was meant.
-template <int dim>
-void check_region(const Mesh<dim>& mesh, const std::string& region, const std::string& key) {
-  if (mesh.regions.contains(region))
-    return;
-  std::vector<std::string> tags;
-  for (const auto& [name, elements] : mesh.regions)
-    tags.push_back(name);
-  if (tags.empty())
-    throw SettingsError(key, fmt::format("the mesh has no region \"{}\", and no other\ngive a box "
-                                         "instead",
-                                         region));
-  const std::string meant = nearest(region, tags);
-  throw SettingsError(key,
-                      fmt::format("the mesh has no region \"{}\"; {} regions are {}", region,
-                                  meant.empty() ? "its" : "did you mean \"" + meant + "\"? Its",
-                                  fmt::join(tags, ", ")));
 }
 
 } // namespace

@@ -1,12 +1,13 @@
 #include "fem_core/program/read_settings.hpp"
 
-#include "common/nearest.hpp"
+#include "fem_core/program/read_boundary.hpp"
 #include "fem_core/program/read_materials.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <tuple>
 
 namespace kerf::fem {
 
@@ -21,64 +22,6 @@ template <int dim> int read_axis(const Table& table, const std::string& key) {
       return axis;
   throw SettingsError(table.path(key),
                       fmt::format("\"{}\" must be {}", name, dim == 2 ? "x or y" : "x, y or z"));
-}
-
-template <int dim> std::optional<Box<dim>> read_box(const Table& table) {
-  if (!table.has("box"))
-    return std::nullopt;
-  const auto [lower, upper] = table.corners<dim>("box");
-  return Box<dim>{lower, upper};
-}
-
-/// The library reports an unknown tag too, but does not guess what was meant.
-template <int dim>
-void check_tag(const Mesh<dim>& mesh, const std::string& tag, const std::string& key) {
-  std::vector<std::string> tags = {"all"};
-  for (const auto& [name, faces] : mesh.boundary)
-    tags.push_back(name);
-  if (std::find(tags.begin(), tags.end(), tag) != tags.end())
-    return;
-  const std::string meant = nearest(tag, tags);
-  throw SettingsError(key,
-                      fmt::format("the mesh has no tag \"{}\"; {} tags are {}", tag,
-                                  meant.empty() ? "its" : "did you mean \"" + meant + "\"? Its",
-                                  fmt::join(tags, ", ")));
-}
-
-template <int dim> BoundarySetting<dim> read_boundary(const Table& table, const Mesh<dim>& mesh) {
-  BoundarySetting<dim> setting;
-  if (table.has("tag")) {
-    setting.tag = table.text("tag");
-    check_tag(mesh, setting.tag, table.path("tag"));
-  }
-  setting.box = read_box<dim>(table);
-
-  setting.components.fill(!table.has("components"));
-  if (table.has("components"))
-    for (const std::string& name : table.texts("components")) {
-      const std::size_t axis = std::string("xyz").find(name);
-      if (name.size() != 1 || axis >= dim)
-        throw SettingsError(
-            table.path("components"),
-            fmt::format("\"{}\" must be {}", name, dim == 2 ? "x or y" : "x, y or z"));
-      setting.components[axis] = true;
-    }
-
-  const std::string motion = table.text("motion");
-  if (motion == "fixed") {
-    setting.motion = Motion::fixed;
-  } else if (motion == "velocity") {
-    setting.motion = Motion::velocity;
-    setting.velocity = table.vector<dim>("velocity");
-  } else if (motion == "hann") {
-    setting.motion = Motion::hann;
-    setting.amplitude = table.vector<dim>("amplitude");
-    setting.duration = table.number("duration");
-  } else {
-    throw SettingsError(table.path("motion"),
-                        fmt::format("\"{}\" must be fixed, velocity or hann", motion));
-  }
-  return setting;
 }
 
 template <int dim> InitialSetting<dim> read_initial(const Table& table) {
@@ -100,24 +43,107 @@ template <int dim> InitialSetting<dim> read_initial(const Table& table) {
   return setting;
 }
 
+template <int dim> InSituStress<dim> read_in_situ_stress(const Table& table) {
+  InSituStress<dim> in_situ;
+  if (table.has("stress")) {
+    const std::vector<double> stress = table.numbers("stress", Symmetric<double, dim>::size);
+    for (std::size_t k = 0; k < stress.size(); ++k)
+      in_situ.stress[static_cast<int>(k)] = stress[k];
+  }
+  if (table.has("K0")) {
+    in_situ.K0 = table.number("K0");
+    in_situ.surface = table.number("surface");
+    in_situ.overburden = table.number("overburden", 0.0);
+  }
+  return in_situ;
+}
+
+/// The velocity ½ V (1 - cos(2 pi t / T)) of the solid, in straight pieces.
+TimeTable hann(double velocity, double duration) {
+  constexpr int pieces = 256; // which miss the pulse by V (pi / 256)² / 4 = 4e-5 V at most
+  std::vector<double> times, values;
+  for (int k = 0; k <= pieces; ++k) {
+    const double s = std::sin(std::numbers::pi * k / pieces);
+    times.push_back(duration * k / pieces);
+    values.push_back(k == pieces ? 0.0 : velocity * s * s);
+  }
+  return TimeTable(std::move(times), std::move(values));
+}
+
+template <int dim>
+IncomingWave<dim> read_wave(const Table& table, const Mesh<dim>& mesh,
+                            const std::string& boundary) {
+  IncomingWave<dim> wave;
+  wave.direction = table.vector<dim>("direction");
+  wave.polarization =
+      table.has("polarization") ? table.vector<dim>("polarization") : wave.direction;
+  wave.velocity = table.has("velocities")
+                      ? table.time_table("velocities")
+                      : hann(table.number("velocity"), table.number("duration"));
+  if (table.has("origin")) {
+    wave.origin = table.vector<dim>("origin");
+    return wave;
+  }
+  const auto nodes = nodes_with_tag(mesh, boundary, table.path("origin"));
+  wave.origin = mesh.position(*std::ranges::min_element(
+      nodes, {}, [&](std::uint32_t a) { return wave.direction.dot(mesh.position(a)); }));
+  return wave;
+}
+
+template <int dim> AbsorbingSetting<dim> read_absorbing(const Table& table, const Mesh<dim>& mesh) {
+  AbsorbingSetting<dim> setting;
+  setting.tag = read_tag(table, mesh);
+  if (table.has("wave"))
+    setting.wave = read_wave(table.table("wave"), mesh, setting.tag);
+  return setting;
+}
+
+template <int dim> WallSetting<dim> read_wall(const Table& table, const Mesh<dim>& mesh) {
+  WallSetting<dim> wall;
+  wall.tag = read_tag(table, mesh);
+  wall.point = table.vector<dim>("point");
+  wall.normal = table.vector<dim>("normal").stableNormalized(); // zero stays zero
+  wall.velocity = table.has("velocities") ? table.time_table("velocities")
+                                          : TimeTable(table.number("velocity", 0.0));
+  wall.friction = table.number("friction", 0.0);
+  return wall;
+}
+
 } // namespace
 
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh) {
   Settings<dim> settings;
   settings.materials = read_materials(participant, mesh);
   settings.plane = read_plane(participant);
-  for (const Table& table : participant.list("boundary"))
-    settings.boundary.push_back(read_boundary(table, mesh));
+  settings.boundary = read_boundary(participant.list("boundary"), mesh);
   for (const Table& table : participant.list("initial"))
     settings.initial.push_back(read_initial<dim>(table));
+  settings.loads = read_loads(participant.list("loads"), mesh);
+  for (const Table& table : participant.list("absorbing"))
+    settings.absorbing.push_back(read_absorbing(table, mesh));
+  for (const Table& table : participant.list("walls"))
+    settings.walls.push_back(read_wall(table, mesh));
+  if (participant.has("in_situ_stress"))
+    settings.in_situ_stress = read_in_situ_stress<dim>(participant.table("in_situ_stress"));
   if (participant.has("gravity"))
     settings.gravity = participant.vector<dim>("gravity");
-  if (participant.has("damping")) {
-    const Table damping = participant.table("damping");
-    settings.mass_damping = damping.number("mass", 0.0);
-    settings.local_damping = damping.number("local", 0.0);
-  }
+  if (participant.has("damping"))
+    std::tie(settings.mass_damping, settings.local_damping) =
+        read_damping(participant.table("damping"));
   return settings;
+}
+
+std::pair<double, double> read_damping(const Table& damping) {
+  return {damping.number("mass", 0.0), damping.number("local", 0.0)};
+}
+
+template <int dim> Watch<dim> read_watch(const Table& participant, const Mesh<dim>& mesh) {
+  Watch<dim> watch;
+  watch.probes = read_probes(participant.list("probes"), mesh);
+  for (const Table& wall : participant.list("walls"))
+    watch.walls.push_back(wall.text("name"));
+  watch.has_stages = !participant.list("stages").empty();
+  return watch;
 }
 
 std::optional<int> read_threads(const Table& participant) {
@@ -131,5 +157,7 @@ std::optional<int> read_threads(const Table& participant) {
 
 template Settings<2> read_settings<2>(const Table&, const Mesh<2>&);
 template Settings<3> read_settings<3>(const Table&, const Mesh<3>&);
+template Watch<2> read_watch<2>(const Table&, const Mesh<2>&);
+template Watch<3> read_watch<3>(const Table&, const Mesh<3>&);
 
 } // namespace kerf::fem

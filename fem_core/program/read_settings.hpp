@@ -3,15 +3,24 @@
 
 #include "fem_core/mesh.hpp"
 #include "fem_core/program/table.hpp"
+#include "fem_core/program/watch.hpp"
 #include "fem_core/settings.hpp"
 
 #include <optional>
+#include <utility>
 
 namespace kerf::fem {
 
 /// Everything besides the mesh, which must have the tags of boundaries and materials.
 /// @throws coupler::SettingsError
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh);
+
+/// Damping by mass, 1/s, and the local one.
+std::pair<double, double> read_damping(const Table& damping);
+
+/// Probes and names of walls.
+/// @throws coupler::SettingsError
+template <int dim> Watch<dim> read_watch(const Table& participant, const Mesh<dim>& mesh);
 
 /// Threads that the engine may use; nothing for "auto".
 /// @throws coupler::SettingsError

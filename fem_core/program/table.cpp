@@ -100,6 +100,22 @@ std::pair<std::vector<double>, std::vector<double>> Table::columns(const std::st
   return result;
 }
 
+TimeTable Table::time_table(const std::string& key, std::size_t column, std::size_t size) const {
+  std::vector<double> times, values;
+  for (const auto& row : get<std::vector<std::vector<double>>>(key, "rows of a time and values")) {
+    if (row.size() != size + 1)
+      throw SettingsError(path(key), fmt::format("a row has {} numbers; it must have a time and {}",
+                                                 row.size(), size));
+    times.push_back(row[0]);
+    values.push_back(row[column]);
+  }
+  try {
+    return TimeTable(std::move(times), std::move(values));
+  } catch (const std::invalid_argument& error) {
+    throw SettingsError(path(key), error.what());
+  }
+}
+
 std::vector<std::uint64_t> Table::counts(const std::string& key, std::size_t size) const {
   const auto values = get<std::vector<std::int64_t>>(key, "a list of integers");
   if (values.size() != size)

@@ -1,12 +1,14 @@
 // Reads values out of a table of settings; an error knows its key.
 #pragma once
 
+#include "common/time_table.hpp"
 #include "common/vec.hpp"
 #include "coupler/participant/participant.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -55,6 +57,15 @@ public:
   std::vector<double> numbers(const std::string& key, std::size_t size) const;
   /// Rows of two numbers, as two columns.
   std::pair<std::vector<double>, std::vector<double>> columns(const std::string& key) const;
+
+  /// A column of rows of a time and values, of which there are `size`.
+  TimeTable time_table(const std::string& key, std::size_t column = 1, std::size_t size = 1) const;
+  template <int dim> std::array<TimeTable, dim> time_tables(const std::string& key) const {
+    std::array<TimeTable, dim> tables;
+    for (std::size_t a = 0; a < dim; ++a)
+      tables[a] = time_table(key, a + 1, dim);
+    return tables;
+  }
 
   template <int dim> Vec<dim> vector(const std::string& key) const {
     return to_vector<dim>(numbers(key, dim));

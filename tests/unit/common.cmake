@@ -3,6 +3,7 @@ add_executable(common_tests
   ${PROJECT_SOURCE_DIR}/tests/config/broken_cases.cpp
   ${PROJECT_SOURCE_DIR}/tests/config/broken_materials.cpp
   ${PROJECT_SOURCE_DIR}/tests/config/broken_meshes.cpp
+  ${PROJECT_SOURCE_DIR}/tests/config/broken_elements.cpp
   ${PROJECT_SOURCE_DIR}/tests/config/broken_solids.cpp
   ${PROJECT_SOURCE_DIR}/tests/config/settings.cpp
   ${PROJECT_SOURCE_DIR}/tests/unit/common_checkpoint.cpp

@@ -32,6 +32,7 @@ template <int dim> std::array<bool, dim> only(int axis) {
 template <int dim> Settings<dim> ground(Formulation formulation, bool absorbing) {
   Settings<dim> settings{.materials = cases::of<dim>(rock, formulation)};
   settings.gravity = -1e5 * Vec<dim>::Unit(1);
+  settings.local_damping = 0.2; // of what is out of balance, which the supports are part of
   settings.in_situ_stress =
       InSituStress<dim>{.K0 = 0.6, .surface = dim == 2 ? 5e-3 : 4e-3, .overburden = 0.0};
   if (absorbing) {

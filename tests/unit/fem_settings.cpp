@@ -205,8 +205,8 @@ TEST(FemSettings, of_materials_are_refused_with_the_key_that_the_case_has) {
             }),
             "materials: element 40 has no material");
   EXPECT_EQ(refusal([&](json& t) { add(t, "region", "vein"); }),
-            "materials[0].region: the mesh has no region \"vein\", and no other\ngive a box "
-            "instead");
+            "materials[0].region: the mesh has no region \"vein\", and no other\ngive a mesh "
+            "with regions");
   EXPECT_EQ(refusal([](json& t) {
               t["mesh"] = {{"type", "tunnel"}, {"origin", {0.0, 0.0}}, {"size", {8.0, 8.0}},
                            {"radius", 1.0},    {"count", {4, 8}},      {"excavation", true}};

@@ -15,3 +15,4 @@ target_link_libraries(fem_verification_tests PRIVATE kerf::fem kerf::warnings GT
 kerf_verification(fem_verification_tests)
 gtest_discover_tests(fem_verification_tests TEST_PREFIX fem_verification.
   PROPERTIES ENVIRONMENT OMP_WAIT_POLICY=passive ${KERF_VERIFIES})
+kerf_python_test(verification.excavation verification/fem_excavation.py Excavation verification)
