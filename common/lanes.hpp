@@ -88,6 +88,20 @@ template <int dim> KERF_INLINE Row4 load_row(const double* from) {
   }
 }
 
+/// One behind the other; the second is best read from memory just here.
+KERF_INLINE Row4 joined(const Row2& low, const Row2& high) {
+#if defined(__AVX__)
+  return (Row4)_mm256_insertf128_pd(_mm256_castpd128_pd256((__m128d)low), (__m128d)high, 1);
+#else
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+#endif
+}
+#if defined(__AVX512F__)
+KERF_INLINE Row8 joined(const Row4& low, const Row4& high) {
+  return (Row8)_mm512_insertf64x4(_mm512_castpd256_pd512((__m256d)low), (__m256d)high, 1);
+}
+#endif
+
 KERF_INLINE bool any(const Mask& mask) {
 #if defined(__AVX512F__)
   return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
@@ -120,7 +134,8 @@ KERF_INLINE Lanes square_root(const Lanes& x) {
 /// 1 / sqrt(x) to the last digit or two; x > 0.
 KERF_INLINE Lanes inverse_square_root(const Lanes& x) {
 #if defined(__AVX512F__)
-  Lanes y = (Lanes)_mm512_maskz_rsqrt14_pd(-1, (__m512d)x); // 14 bits, doubled by each Newton iteration
+  Lanes y =
+      (Lanes)_mm512_maskz_rsqrt14_pd(-1, (__m512d)x); // 14 bits, doubled by each Newton iteration
   const Lanes half = 0.5 * x;
   y = y * (1.5 - half * y * y);
   return y * (1.5 - half * y * y);
@@ -160,10 +175,10 @@ KERF_INLINE double total(const Lanes& x) {
 /// Lane l of `column[c]` becomes number c of row l.
 KERF_INLINE void to_columns(const Row4 (&row)[width], Lanes (&column)[4]) {
 #if defined(__AVX512F__)
-  const Row8 t0 = __builtin_shufflevector(row[0], row[4], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Row8 t1 = __builtin_shufflevector(row[1], row[5], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Row8 t2 = __builtin_shufflevector(row[2], row[6], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Row8 t3 = __builtin_shufflevector(row[3], row[7], 0, 1, 2, 3, 4, 5, 6, 7);
+  const Row8 t0 = joined(row[0], row[4]);
+  const Row8 t1 = joined(row[1], row[5]);
+  const Row8 t2 = joined(row[2], row[6]);
+  const Row8 t3 = joined(row[3], row[7]);
   const Row8 a = __builtin_shufflevector(t0, t1, 0, 8, 2, 10, 4, 12, 6, 14);
   const Row8 b = __builtin_shufflevector(t0, t1, 1, 9, 3, 11, 5, 13, 7, 15);
   const Row8 c = __builtin_shufflevector(t2, t3, 0, 8, 2, 10, 4, 12, 6, 14);

@@ -11,6 +11,12 @@
 #include <stdexcept>
 
 namespace kerf::fem {
+namespace {
+
+constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
+
+} // namespace
+
 template <int dim>
 Engine<dim>::Engine(Mesh<dim> mesh, Settings<dim> settings)
     : mesh_(std::move(mesh)), settings_(std::move(settings)), boundary_(mesh_, settings_.boundary),
@@ -104,6 +110,9 @@ template <int dim> void Engine<dim>::make_masses() {
       mass_[patches_.row_of_node[nodes[a]]] += of_element[static_cast<Eigen::Index>(a)];
   }
   moved_.clear();
+  scratch_.clear();
+  prescribed_ = Rows<dim>(patches_.num_special);
+  std::fill_n(prescribed_.data(), prescribed_.size() * row_size<dim>, is_free);
   for (const Prescribed& entry : boundary_.entries()) {
     const std::uint32_t row = patches_.row_of_node[entry.node];
     if (mass_[row] > 0.0)

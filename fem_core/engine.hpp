@@ -146,9 +146,10 @@ private:
   Row<dim> sum_of_parts(std::size_t special) const;
   void average_dilatation(std::uint32_t group, const PatchMotion<dim>& motion);
   void add_loads();
+  void make_scratch();
   void compute_forces(bool finish);
   void advance_plain();
-  void advance_special(const Rows<dim>& prescribed);
+  void advance_special();
   std::vector<Pushed> pushed_rows() const;
   void push_by_dashpots(std::span<Pushed> pushed);
   void push_by_walls(std::span<Pushed> pushed);
@@ -188,9 +189,12 @@ private:
   Rows<dim> force_;               // own, of special rows; of all, after compute_own_forces()
   Rows<dim> parts_;               // of special rows, what each patch adds
   bool forces_are_current_ = false;
+  Rows<dim> prescribed_;                   // velocities of special rows, m/s; NaN where free
+  std::vector<PatchScratch<dim>> scratch_; // [threads]
   std::vector<std::uint32_t> interface_rows_;
   Rows<dim> interface_force_;                     // [rows]; empty until there is one
   ElementWork element_work_{};                    // of all steps
+  std::vector<ElementWork> patch_work_;           // of the last forces
   std::vector<RowSums<dim>> patch_sums_;          // of the plain rows of the last step
   RowSums<dim> sums_;                             // of all rows of the last step
   std::vector<double> load_force_;                // [loads_.nodes()][dim] of this step, N

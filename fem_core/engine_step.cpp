@@ -2,14 +2,13 @@
 #include "fem_core/engine.hpp"
 
 #include <Eigen/LU>
+#include <omp.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace kerf::fem {
 namespace {
 
-constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t rows_per_block = 1024;
 
 } // namespace
@@ -33,16 +32,17 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
       average_dilatation(g, motion);
   const StepSettings<dim> step = step_settings();
   const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
-  std::vector<ElementWork> work(patches_.patches.size());
+  patch_work_.resize(patches_.patches.size());
   patch_sums_.assign(patches_.patches.size(), {});
+  make_scratch();
 #pragma omp parallel if (num_patches > 1)
   {
-    PatchScratch<dim> scratch(patches_);
+    PatchScratch<dim>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(static)
     for (std::int64_t p = 0; p < num_patches; ++p) {
       const auto k = static_cast<std::size_t>(p);
       const Patch& patch = patches_.patches[k];
-      work[k] =
+      patch_work_[k] =
           compute_patch<dim>(patches_, patch, groups_[patch.group], motion, Wanted::force, scratch);
       std::copy_n(scratch.force.at(patch.num_own), patch.num_shared * row_size<dim>,
                   parts_.at(patch.first_shared));
@@ -55,7 +55,7 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
                     force_.at(patch.first_row));
     }
   }
-  for (const ElementWork& of_patch : work) {
+  for (const ElementWork& of_patch : patch_work_) {
     element_work_.internal += of_patch.internal;
     element_work_.dissipated += of_patch.dissipated;
     element_work_.hourglass += of_patch.hourglass;
@@ -68,6 +68,12 @@ template <int dim> void Engine<dim>::compute_forces(bool finish) {
     std::copy_n(sum.x, row_size<dim>, force_.at(patches_.num_plain + static_cast<std::size_t>(k)));
   }
   add_loads();
+}
+
+/// For every thread that may come.
+template <int dim> void Engine<dim>::make_scratch() {
+  while (scratch_.size() < static_cast<std::size_t>(omp_get_max_threads()))
+    scratch_.emplace_back(patches_);
 }
 
 /// What the patches add up at a special row, in their order.
@@ -86,9 +92,10 @@ void Engine<dim>::average_dilatation(std::uint32_t group, const PatchMotion<dim>
   std::vector<double>& mean = groups_[group].dilatation;
   mean.assign(patches_.num_rows(), 0.0);
   const auto num_patches = static_cast<std::int64_t>(patches_.patches.size());
+  make_scratch();
 #pragma omp parallel if (num_patches > 1)
   {
-    PatchScratch<dim> scratch(patches_);
+    PatchScratch<dim>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(static)
     for (std::int64_t p = 0; p < num_patches; ++p) {
       const Patch& patch = patches_.patches[static_cast<std::size_t>(p)];
@@ -154,11 +161,9 @@ template <int dim> void Engine<dim>::integrate() {
     interface_before.push_back(velocity_[row]);
   }
   std::vector<double> moved_before;
-  Rows<dim> prescribed(patches_.num_special);
-  std::fill_n(prescribed.data(), prescribed.size() * row_size<dim>, is_free);
   for (const Moved& moved : moved_) {
     moved_before.push_back(velocity_[moved.row][moved.component]);
-    prescribed[moved.row - patches_.num_plain][moved.component] =
+    prescribed_[moved.row - patches_.num_plain][moved.component] =
         boundary_.velocity(moved.node, moved.component, step_ - changed_at_, time_step_);
   }
 
@@ -168,7 +173,7 @@ template <int dim> void Engine<dim>::integrate() {
     advance_plain();
   else
     compute_forces(true);
-  advance_special(prescribed);
+  advance_special();
 
   for (std::size_t k = 0; k < loads_.nodes().size(); ++k)
     pushed[k].driving = Eigen::Map<const Vec<dim>>(&load_force_[k * dim]);
@@ -224,7 +229,7 @@ template <int dim> void Engine<dim>::advance_plain() {
   }
 }
 
-template <int dim> void Engine<dim>::advance_special(const Rows<dim>& prescribed) {
+template <int dim> void Engine<dim>::advance_special() {
   const StepSettings<dim> step = step_settings();
   const std::size_t first = patches_.num_plain, count = patches_.num_special;
   const std::size_t blocks = (count + rows_per_block - 1) / rows_per_block;
@@ -234,8 +239,8 @@ template <int dim> void Engine<dim>::advance_special(const Rows<dim>& prescribed
     const std::size_t begin = static_cast<std::size_t>(b) * rows_per_block;
     const std::size_t row = first + begin;
     advance<dim>(step, std::min(rows_per_block, count - begin), &mass_[row], force_.at(row),
-                 prescribed.at(begin), velocity_.at(row), displacement_.at(row),
-                 sums[static_cast<std::size_t>(b)]);
+                 moved_.empty() ? nullptr : prescribed_.at(begin), velocity_.at(row),
+                 displacement_.at(row), sums[static_cast<std::size_t>(b)]);
   }
   sums_ = {};
   for (const RowSums<dim>& of_patch : patch_sums_)

@@ -1,69 +1,52 @@
 #include "fem_core/integrate.hpp"
 
-#include <cmath>
+#include "common/instruction_set.hpp"
+#include "fem_core/kernels/advance.hpp"
 
-namespace kerf::fem {
-namespace {
+namespace kerf {
 
-template <int dim, bool special>
-void advance_rows(const StepSettings<dim>& step, std::size_t count, const double* mass,
-                  const double* force, [[maybe_unused]] const double* prescribed, double* velocity,
-                  double* displacement, RowSums<dim>& sums) {
-  constexpr int size = row_size<dim>;
-  const double dt = step.time_step, half = 0.5 * step.mass_damping * dt;
-  double gravity[size] = {};
-  for (int i = 0; i < dim; ++i)
-    gravity[i] = step.gravity[i];
-  double kinetic[size] = {}, momentum[size] = {}, change[size] = {};
-  double lost_before[size] = {}, lost_after[size] = {};
-  for (std::size_t k = 0; k < count; ++k) {
-    const double m = mass[k], of_step = dt / m;
-    for (int i = 0; i < size; ++i) {
-      const std::size_t at = k * size + static_cast<std::size_t>(i);
-      const double f = force[at] + m * gravity[i];
-      double before = velocity[at], after = 0.0;
-      if constexpr (special) {
-        const bool is_free = prescribed == nullptr || std::isnan(prescribed[at]);
-        const double sign = before > 0.0 ? 1.0 : before < 0.0 ? -1.0 : 0.0;
-        const double net = f - step.local_damping * sign * std::abs(f);
-        if (is_free && step.first)
-          before -= 0.5 * of_step * net;
-        after = is_free ? ((1.0 - half) * before + of_step * net) / (1.0 + half) : prescribed[at];
-        const double resisted =
-            is_free ? f - net + step.mass_damping * m * 0.5 * (before + after) : 0.0; // N
-        lost_before[i] += resisted * before;
-        lost_after[i] += resisted * after;
-      } else {
-        if (step.first)
-          before -= 0.5 * of_step * f;
-        after = before + of_step * f;
-      }
-      velocity[at] = after;
-      displacement[at] += dt * after;
-      kinetic[i] += m * before * after;
-      momentum[i] += m * (before + after);
-      change[i] += m * (after - before);
-    }
-  }
-  for (int i = 0; i < dim; ++i) {
-    sums.kinetic += 0.5 * kinetic[i];
-    sums.momentum[i] += 0.5 * momentum[i];
-    sums.damped += {.before = 0.5 * dt * lost_before[i], .after = 0.5 * dt * lost_after[i]};
-    sums.gravity += {.before = 0.25 * dt * gravity[i] * (momentum[i] - change[i]),
-                     .after = 0.25 * dt * gravity[i] * (momentum[i] + change[i])};
-  }
+namespace baseline {
+template <int dim> void advance(fem::RowsView& view);
+}
+namespace avx2 {
+template <int dim> void advance(fem::RowsView& view);
+}
+namespace avx512 {
+template <int dim> void advance(fem::RowsView& view);
 }
 
-} // namespace
+namespace fem {
 
 template <int dim>
 void advance(const StepSettings<dim>& step, std::size_t count, const double* mass,
              const double* force, const double* prescribed, double* velocity, double* displacement,
              RowSums<dim>& sums) {
-  if (prescribed != nullptr || step.mass_damping > 0.0 || step.local_damping > 0.0)
-    advance_rows<dim, true>(step, count, mass, force, prescribed, velocity, displacement, sums);
-  else
-    advance_rows<dim, false>(step, count, mass, force, prescribed, velocity, displacement, sums);
+  RowsView view{.count = count,
+                .mass = mass,
+                .force = force,
+                .prescribed = prescribed,
+                .velocity = velocity,
+                .displacement = displacement,
+                .time_step = step.time_step,
+                .first = step.first,
+                .mass_damping = step.mass_damping,
+                .local_damping = step.local_damping,
+                .gravity = {},
+                .kinetic = {},
+                .momentum = {},
+                .change = {},
+                .lost = {}};
+  for (int i = 0; i < dim; ++i)
+    view.gravity[i] = step.gravity[i];
+  dispatch(baseline::advance<dim>, avx2::advance<dim>, avx512::advance<dim>)(view);
+  const double half = 0.5 * step.time_step; // of the work, which each of the velocities does
+  for (int i = 0; i < dim; ++i) {
+    sums.kinetic += 0.5 * view.kinetic[i];
+    sums.momentum[i] += 0.5 * view.momentum[i];
+    sums.damped += {.before = half * view.lost[0][i], .after = half * view.lost[1][i]};
+    sums.gravity += {.before = 0.5 * half * view.gravity[i] * (view.momentum[i] - view.change[i]),
+                     .after = 0.5 * half * view.gravity[i] * (view.momentum[i] + view.change[i])};
+  }
 }
 
 template void advance(const StepSettings<2>&, std::size_t, const double*, const double*,
@@ -71,4 +54,5 @@ template void advance(const StepSettings<2>&, std::size_t, const double*, const 
 template void advance(const StepSettings<3>&, std::size_t, const double*, const double*,
                       const double*, double*, double*, RowSums<3>&);
 
-} // namespace kerf::fem
+} // namespace fem
+} // namespace kerf

@@ -36,8 +36,7 @@ template <int dim> struct RowSums {
 /// @param mass    [count] kg, positive
 /// @param force   [count] resultants without gravity and damping, N
 /// @param prescribed  [count] velocities that are given, m/s; NaN where a component is free; null:
-/// all
-///                    are
+///                    all are
 /// @param velocity, displacement  [count] v^(n-1/2), m/s, and u^n, m; receive the next ones
 template <int dim>
 void advance(const StepSettings<dim>& step, std::size_t count, const double* mass,

@@ -15,7 +15,8 @@ namespace {
 constexpr std::uint8_t at_home = 1 + 3 + 9;
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Elements of a patch: as many as keep the rows of its nodes in the cache of one core.
+/// Elements of a patch: as many as keep the rows of its nodes in the cache of one core. Without any
+/// common node 16 bits still tell where each row begins.
 constexpr std::size_t patch_size(Shape shape) {
   switch (shape) {
   case Shape::hex8:
@@ -23,7 +24,6 @@ constexpr std::size_t patch_size(Shape shape) {
   case Shape::tet4:
     return 4096;
   case Shape::quad4:
-    return 1024;
   case Shape::tri3:
     break;
   }
@@ -167,7 +167,7 @@ Patches::Patches(const Mesh<dim>& mesh, std::vector<ElementGroup> all,
         local = patch.num_own + entry->second;
       }
       of_group[(k / batch_size * count + c) * batch_size + k % batch_size] =
-          static_cast<std::uint16_t>(local);
+          static_cast<std::uint16_t>(local * row_size<dim>);
     });
     patch.num_shared = static_cast<std::uint32_t>(place.size());
     copies += patch.num_rows();

@@ -63,7 +63,8 @@ public:
   /// [groups][batches][batch_size] number in the mesh; what fills the last batch of a patch repeats
   /// an element of it, and is not counted.
   std::vector<std::vector<std::uint32_t>> element_of;
-  /// [groups][batches][nodes][batch_size] row of the patch: own ones, then shared ones.
+  /// [groups][batches][nodes][batch_size] row of the patch, own ones, then shared ones, times
+  /// row_size<dim>: where it begins.
   std::vector<std::vector<std::uint16_t>> nodes;
   std::vector<std::uint32_t> shared; // special rows of each patch
   /// The image of a periodic mesh that a patch sees of a shared row: three digits to the base

@@ -22,8 +22,9 @@ struct StateParts {
     auto& [mesh, settings, boundary, loads, absorbing, walls, material_of, alpha, removed, active,
            patches, groups, group_of, place, reference, mass, moved, time_step, step, changed_at,
            displacement, velocity, initial_displacement, origin, support, force, parts,
-           forces_are_current, interface_rows, interface_force, element_work, patch_sums, sums,
-           load_force, reactions, wall_forces, damped_work, external_work, interface_work] = engine;
+           forces_are_current, prescribed, scratch, interface_rows, interface_force, element_work,
+           patch_work, patch_sums, sums, load_force, reactions, wall_forces, damped_work,
+           external_work, interface_work] = engine;
     visit("time_step", time_step);
     visit("step", step);
     visit("displacement", displacement);

@@ -182,6 +182,11 @@ private:
   using Pair = typename BlockPairs<dim>::Pair;
   using PairsOfRow = std::vector<const Pair*>; // never empty
 
+  /// Where a row of the block begins.
+  static std::uint16_t place(std::uint32_t row) {
+    return static_cast<std::uint16_t>(row * row_size<dim>);
+  }
+
   void add_kind(const BlockPairs<dim>& pairs, PairKind kind, std::uint32_t first_row) {
     std::vector<PairsOfRow> of_rows;
     for (const Pair& pair : pairs.pairs()) {
@@ -204,7 +209,7 @@ private:
       return of_rows[lane < of_rows.size() ? lane : 0].front()->row;
     };
     for (std::size_t lane = 0; lane < batch_size; ++lane)
-      rows_.rows_.push_back(static_cast<std::uint16_t>(row_of(lane) - first_row));
+      rows_.rows_.push_back(place(row_of(lane) - first_row));
     const std::size_t length = of_rows.front().size();
     rows_.lengths_.push_back(static_cast<std::uint16_t>(length));
     for (std::size_t k = 0; k < length; ++k) {
@@ -214,7 +219,7 @@ private:
         const bool is_there = lane < of_rows.size() && k < of_rows[lane].size();
         const std::uint32_t other = is_there ? of_rows[lane][k]->other : row_of(lane);
         if (kind.inside)
-          rows_.inside_.push_back(static_cast<std::uint16_t>(other - first_row));
+          rows_.inside_.push_back(place(other - first_row));
         else
           rows_.outside_.push_back(other);
         if (is_there)

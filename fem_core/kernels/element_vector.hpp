@@ -65,6 +65,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
   KERF_INLINE ElementVector(const PatchView& patch, std::size_t at, int elements)
       : view(patch), first(at), count(elements) {
     const std::uint16_t* node = view.nodes + place(first, nodes);
+#pragma GCC unroll 8
     for (int a = 0; a < nodes; ++a) {
       X[a] = gather<dim>(view.reference, node + a * batch_size);
       motion[a] = gather<dim>(view.motion, node + a * batch_size);
@@ -143,6 +144,7 @@ template <Shape shape, Kinematics kinematics, Space space> struct ElementVector 
     Columns<dim> corner[nodes];
     df.corner_forces(corner);
     const std::uint16_t* node = view.nodes + place(first, nodes);
+#pragma GCC unroll 8
     for (int a = 0; a < nodes; ++a) {
       if constexpr (ring)
         corner[a].c[0] += force[a].c[0];

@@ -45,7 +45,8 @@ void nodal_pressure_kernel(PatchView& patch) {
         Lanes mean{};
         for (int a = 0; a < Elements::nodes; ++a)
           for (int l = 0; l < width; ++l)
-            mean[l] += view.dilatation[node[a * batch_size + l]] / Elements::nodes;
+            mean[l] += view.dilatation[node[a * batch_size + l] / fem::row_size<Elements::dim>] /
+                       Elements::nodes;
         const Lanes missing = (1.0 / 3.0) * (mean - d.own_trace);
         for (int k = 0; k < 3; ++k)
           d.strain[k] += missing;

@@ -59,7 +59,7 @@ struct ElementWork {
 /// One patch. Rows are those of the patch's own nodes, see Patches.
 struct PatchView {
   std::size_t num_elements;
-  const std::uint16_t* nodes; // [batches][nodes_of(shape)][batch_size] row of the patch
+  const std::uint16_t* nodes; // [batches][nodes_of(shape)][batch_size] where the row begins
   const double* reference;    // [rows] X; with Kinematics::rate x at the end of the increment, m
   const double* motion;       // [rows] u, m; for increments and rates v, m/s
   double motion_scale;        // times the motion is the displacement (increment): 1 or time_step

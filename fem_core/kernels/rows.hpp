@@ -10,31 +10,27 @@ namespace kerf::KERF_ISA {
 template <int dim> struct Columns { Lanes c[dim]; };
 
 /// The rows of one node of `width` elements.
-KERF_INLINE Columns<3> gather3(const double* rows, const std::uint16_t* node) {
+/// @param place  where each begins
+KERF_INLINE Columns<3> gather3(const double* rows, const std::uint16_t* place) {
   Row4 row[width];
   for (int l = 0; l < width; ++l)
-    std::memcpy(&row[l], rows + 4 * node[l], sizeof(Row4));
+    std::memcpy(&row[l], rows + place[l], sizeof(Row4));
   Lanes column[4];
   to_columns(row, column);
   return {column[0], column[1], column[2]};
 }
 
-KERF_INLINE Columns<2> gather2(const double* rows, const std::uint16_t* node) {
+KERF_INLINE Columns<2> gather2(const double* rows, const std::uint16_t* place) {
   Row2 r[width];
   for (int l = 0; l < width; ++l)
-    std::memcpy(&r[l], rows + 2 * node[l], sizeof(Row2));
+    std::memcpy(&r[l], rows + place[l], sizeof(Row2));
 #if defined(__AVX512F__)
-  const Row4 e0 = __builtin_shufflevector(r[0], r[2], 0, 1, 2, 3);
-  const Row4 e1 = __builtin_shufflevector(r[4], r[6], 0, 1, 2, 3);
-  const Row4 o0 = __builtin_shufflevector(r[1], r[3], 0, 1, 2, 3);
-  const Row4 o1 = __builtin_shufflevector(r[5], r[7], 0, 1, 2, 3);
-  const Row8 even = __builtin_shufflevector(e0, e1, 0, 1, 2, 3, 4, 5, 6, 7);
-  const Row8 odd = __builtin_shufflevector(o0, o1, 0, 1, 2, 3, 4, 5, 6, 7);
+  const Row8 even = joined(joined(r[0], r[2]), joined(r[4], r[6]));
+  const Row8 odd = joined(joined(r[1], r[3]), joined(r[5], r[7]));
   return {__builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14),
           __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15)};
 #elif defined(__AVX__)
-  const Row4 even = __builtin_shufflevector(r[0], r[2], 0, 1, 2, 3);
-  const Row4 odd = __builtin_shufflevector(r[1], r[3], 0, 1, 2, 3);
+  const Row4 even = joined(r[0], r[2]), odd = joined(r[1], r[3]);
   return {__builtin_shufflevector(even, odd, 0, 4, 2, 6),
           __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
 #else
@@ -42,14 +38,13 @@ KERF_INLINE Columns<2> gather2(const double* rows, const std::uint16_t* node) {
 #endif
 }
 
-template <int dim> KERF_INLINE Columns<dim> gather(const double* rows, const std::uint16_t* node) {
+template <int dim> KERF_INLINE Columns<dim> gather(const double* rows, const std::uint16_t* place) {
   if constexpr (dim == 2)
-    return gather2(rows, node);
+    return gather2(rows, place);
   else
-    return gather3(rows, node);
+    return gather3(rows, place);
 }
 
-/// Takes a row off row l of `rows`.
 template <class Row> KERF_INLINE void subtract_row(double* at, const Row& row) {
   Row sum;
   std::memcpy(&sum, at, sizeof sum);
@@ -92,16 +87,16 @@ template <> struct RowOf<3> { using type = Row4; };
 
 /// Takes a force off the rows of one node of the first `count` elements, which may share rows.
 template <int dim>
-KERF_INLINE void subtract(double* rows, const std::uint16_t* node, const Columns<dim>& force,
+KERF_INLINE void subtract(double* rows, const std::uint16_t* place, const Columns<dim>& force,
                           int count) {
   typename RowOf<dim>::type row[width];
   to_rows(force, row);
   if (count == width)
     for (int l = 0; l < width; ++l)
-      subtract_row(rows + fem::row_size<dim> * node[l], row[l]);
+      subtract_row(rows + place[l], row[l]);
   else
     for (int l = 0; l < count; ++l)
-      subtract_row(rows + fem::row_size<dim> * node[l], row[l]);
+      subtract_row(rows + place[l], row[l]);
 }
 
 } // namespace kerf::KERF_ISA

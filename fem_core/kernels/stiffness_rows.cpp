@@ -17,11 +17,12 @@ struct StiffnessCursor {
 };
 
 template <int dim> KERF_INLINE Columns<dim> gather(const double* rows, const std::uint32_t* row) {
-  static constexpr std::uint16_t in_order[batch_size] = {0, 1, 2, 3, 4, 5, 6, 7};
-  constexpr std::size_t size = fem::row_size<dim>;
+  constexpr std::uint16_t size = fem::row_size<dim>;
+  static constexpr std::uint16_t in_order[batch_size] = {0,        size,     2 * size, 3 * size,
+                                                         4 * size, 5 * size, 6 * size, 7 * size};
   double copy[size * width];
   for (std::size_t l = 0; l < width; ++l)
-    std::memcpy(copy + size * l, rows + size * row[l], size * sizeof(double));
+    std::memcpy(copy + size * l, rows + std::size_t{size} * row[l], size * sizeof(double));
   return gather<dim>(copy, in_order);
 }
 

@@ -33,9 +33,9 @@ struct alignas(batch_size * sizeof(double)) PairNumbers {
 struct StiffnessView {
   std::size_t first_row, num_rows;
   const std::uint32_t* num_slices; // [num_pair_kinds]
-  const std::uint16_t* rows;       // [slices][batch_size] of the block
+  const std::uint16_t* rows;       // [slices][batch_size] where they begin in the block
   const std::uint16_t* lengths;    // [slices] pairs of each row
-  const std::uint16_t* inside;     // [slices][length][batch_size] other rows, of the block
+  const std::uint16_t* inside;     // [slices][length][batch_size] other rows, likewise
   const std::uint32_t* outside;    // [slices][length][batch_size] other rows, of all
   const PairNumbers* matrices;     // [slices][length][pair_numbers()] N/m
   const double* displacement;      // [rows] u, m

@@ -77,7 +77,7 @@ TEST_F(FemParticipant, writes_a_history_and_frames_that_open_without_the_program
   EXPECT_EQ(declaration.boundary.at("left").size(), 4u);
   broker.say(Plan{});
   const auto limits = broker.await<Limits>(message::limits);
-  EXPECT_EQ(limits.limited_by, "element 0");
+  EXPECT_TRUE(limits.limited_by.starts_with("element ")); // all are equal: rounding chooses
   // 2 (lambda + mu) per element of unit shape: 8 (lambda + mu) / (rho h²), see the bound's own test
   EXPECT_NEAR(limits.largest_omega2, 8.0 * 8e9 / 2500.0 / 1e-6, 1e-9 * limits.largest_omega2);
   broker.say(Schedule{.time_step = 1e-7, .steps = 25, .history_every = 10, .frame_every = 20});
