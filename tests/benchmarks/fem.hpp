@@ -15,7 +15,7 @@ struct FemOptions {
   int rounds = 5;
   int steps = 0;      // in a timed block; 0: 20 million element-steps
   bool large = false; // eight times as many elements
-  bool peers = false; // FEniCSx, too
+  bool peers = false; // FEniCSx and deal.II, too
 };
 
 /// Times every workload with every law, codes and numbers of threads in turn, and prints a table.

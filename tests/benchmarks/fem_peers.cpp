@@ -28,14 +28,26 @@ std::string missing(const char* code) {
                      code);
 }
 
+void build_dealii() {
+  if (!std::filesystem::exists("/usr/include/deal.II"))
+    throw std::runtime_error(missing("deal.II"));
+  if (!std::filesystem::exists(KERF_DEALII_BUILD "/kerf-peer-dealii"))
+    fmt::print(stderr, "building the program for deal.II, once: it takes minutes and 2.5 GB…\n");
+  output_of(fmt::format("cmake -S {0}/dealii -B {1} -G Ninja -DCMAKE_BUILD_TYPE=Release && ninja "
+                        "-C {1}",
+                        KERF_PEERS_FOLDER, KERF_DEALII_BUILD));
+}
+
 } // namespace
 
 std::vector<FemPeer> fem_peers(const FemWorkload& workload) {
   if (workload.formulation != fem::Formulation::full)
-    return {}; // it has no one-point elements with hourglass control
+    return {}; // neither has one-point elements with hourglass control
   if (std::system(fmt::format("{} -c 'import dolfinx' 2> /dev/null", python).c_str()) != 0)
     throw std::runtime_error(missing("FEniCSx"));
-  return {{"fenicsx", "linear"}, {"petsc", "linear"}, {"fenicsx", "neo_hookean"}};
+  build_dealii();
+  return {
+      {"fenicsx", "linear"}, {"petsc", "linear"}, {"dealii", "linear"}, {"fenicsx", "neo_hookean"}};
 }
 
 template <int dim>
@@ -59,9 +71,13 @@ FemPeerModel<dim>::FemPeerModel(const FemWorkload& workload, const fem::Mesh<dim
 template <int dim>
 double FemPeerModel<dim>::seconds_per_step(const FemPeer& peer, int threads, int steps,
                                            int warm_up) {
-  const std::string program = fmt::format(
-      "{} {}/fenicsx_steps.py {} {} {}", python, KERF_PEERS_FOLDER, folder_.path().string(),
-      peer.name == "petsc" ? "stiffness" : "assembled", peer.law);
+  std::string program;
+  if (peer.name == "dealii")
+    program = fmt::format("{}/kerf-peer-dealii {}", KERF_DEALII_BUILD, folder_.path().string());
+  else
+    program = fmt::format("{} {}/fenicsx_steps.py {} {} {}", python, KERF_PEERS_FOLDER,
+                          folder_.path().string(), peer.name == "petsc" ? "stiffness" : "assembled",
+                          peer.law);
   return loop_time(output_of(fmt::format("OMP_NUM_THREADS=1 mpirun --allow-run-as-root "
                                          "--oversubscribe --bind-to none -np {} {} {} {}",
                                          threads, program, steps, warm_up))) /

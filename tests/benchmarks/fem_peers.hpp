@@ -1,4 +1,4 @@
-// Other codes on the same mesh: FEniCSx, assembled and as a stiffness matrix.
+// Other codes on the same mesh: FEniCSx and deal.II.
 #pragma once
 
 #include "tests/benchmarks/commands.hpp"
@@ -10,7 +10,7 @@
 namespace kerf::benchmarks {
 
 struct FemPeer {
-  std::string name; // fenicsx, or petsc: a stiffness matrix of FEniCSx
+  std::string name; // fenicsx, petsc (a stiffness matrix of FEniCSx) or dealii
   std::string law;  // linear or neo_hookean
 
   /// Whether it computes the same as kerf with a law.
@@ -19,7 +19,7 @@ struct FemPeer {
   }
 };
 
-/// Those that can run a workload, with their programs.
+/// Those that can run a workload, with their programs; builds that for deal.II.
 /// @throws std::runtime_error when a code is not installed
 std::vector<FemPeer> fem_peers(const FemWorkload& workload);
 

@@ -59,7 +59,7 @@ std::unique_ptr<CLI::App> parser_of(Options& options) {
       ->delimiter(',')
       ->check(CLI::IsMember(std::vector<std::string>(fem_laws.begin(), fem_laws.end())));
   CLI::Option* large = fem->add_flag("--large", options.fem.large, "Eight times as many elements");
-  CLI::Option* fem_peers = fem->add_flag("--peers", options.fem.peers, "FEniCSx, too");
+  CLI::Option* fem_peers = fem->add_flag("--peers", options.fem.peers, "FEniCSx and deal.II, too");
   fem->add_flag("--sweep", options.sweep, "Instead: from 10 000 to 3 000 000 elements, one thread")
       ->excludes(large)
       ->excludes(fem_peers);
