@@ -8,7 +8,6 @@ add_executable(fem_tests
   ${CMAKE_CURRENT_LIST_DIR}/fem_restart.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_settings.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fem_step_limit.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/fem_stiffness_rows.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../verification/fem_waves.cpp)
 target_link_libraries(fem_tests PRIVATE kerf::fem kerf::fem_participant kerf::channel kerf::common
   nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX kerf::warnings GTest::gtest_main)
