@@ -1,6 +1,9 @@
 // Energies of a body and the books of the work that is done on it.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 namespace kerf::fem {
 
 /// Energies at t_n and the work done until then, J (per metre of thickness in 2D). The balance is
@@ -21,9 +24,10 @@ struct Energies {
   }
 };
 
-/// Kinetic over elastic energy; zero where nothing is stored.
+/// Kinetic energy over the size of the elastic one; infinite where nothing is stored.
 inline double kinetic_ratio(const Energies& energies) {
-  return energies.elastic > 0.0 ? energies.kinetic / energies.elastic : 0.0;
+  return energies.elastic != 0.0 ? energies.kinetic / std::abs(energies.elastic)
+                                 : std::numeric_limits<double>::infinity();
 }
 
 /// Work of the forces f_n of one step, f_n . v dt/2: with the velocity before t_n, and with the one

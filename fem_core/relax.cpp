@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace kerf::fem {
@@ -14,6 +15,7 @@ Relaxation relax(Engine<dim>& engine, double tolerance, std::uint64_t most_steps
   const bool damped = engine.settings().kinetic_damping;
   engine.change({.kinetic_damping = true});
   Relaxation result;
+  Energies energies;
   do {
     if (result.steps >= most_steps)
       throw std::runtime_error(
@@ -22,10 +24,12 @@ Relaxation relax(Engine<dim>& engine, double tolerance, std::uint64_t most_steps
                       result.steps, result.unbalanced_force, result.kinetic_ratio, tolerance));
     for (std::uint64_t k = 0; k < every; ++k)
       engine.integrate();
+    energies = engine.energies();
     result = {.steps = result.steps + every,
               .unbalanced_force = engine.unbalanced_force(),
-              .kinetic_ratio = kinetic_ratio(engine.energies())};
-  } while (!(result.unbalanced_force <= tolerance && result.kinetic_ratio <= tolerance));
+              .kinetic_ratio = kinetic_ratio(energies)};
+  } while (!(result.unbalanced_force <= tolerance &&
+             energies.kinetic <= tolerance * std::abs(energies.elastic)));
   engine.change({.kinetic_damping = damped});
   return result;
 }

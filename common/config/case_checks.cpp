@@ -56,14 +56,14 @@ private:
       check_clusters(key + ".clusters", participant["clusters"]);
       if (!participant["in_situ_stress"].is_null())
         check_in_situ_stress(key, participant);
-      if (!participant["mass_scaling"].is_null())
-        check_mass_scaling(key, participant);
     } else {
       check_mesh(key + ".mesh", participant["mesh"], settings_["case"], problems_);
       check_solids(key, settings_, problems_);
       check_elements(key, settings_, problems_);
       check_series(key, participant, {"probes", "walls"}, {"boundary", "loads"});
     }
+    if (!participant["mass_scaling"].is_null())
+      check_mass_scaling(key, participant);
     for (std::size_t k = 0; k < participant["boundary"].size(); ++k)
       check_boundary(fmt::format("{}.boundary[{}]", key, k), participant["boundary"][k]);
     for (std::size_t k = 0; k < participant["initial"].size(); ++k)
@@ -264,7 +264,7 @@ private:
                         "leave it out, or the coupling.");
   }
 
-  /// Waves are slower in heavier particles.
+  /// Waves are slower in a heavier body.
   void check_mass_scaling(const string& participant, const json& table) {
     const string key = participant + ".mass_scaling";
     const json& scaling = table["mass_scaling"];
@@ -279,10 +279,11 @@ private:
                                     participant),
                         "leave it out, or the coupling.");
     const auto is_wave = [](const json& one) {
-      return one.value("kind", "") == "pulse" || one.value("motion", "") == "hann";
+      return one.value("kind", "") == "pulse" || one.value("motion", "") == "hann" ||
+             !one.value("wave", json()).is_null();
     };
-    for (const char* list : {"initial", "boundary"})
-      for (const json& one : table[list])
+    for (const char* list : {"initial", "boundary", "absorbing"})
+      for (const json& one : table.value(list, json::array()))
         if (is_wave(one))
           problems_.add(key,
                         fmt::format("{} is given, but {}.{} makes a wave, whose speed it "

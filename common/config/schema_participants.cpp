@@ -136,14 +136,15 @@ std::vector<Key> in_situ_keys(const std::string& kind) {
   };
 }
 
-std::vector<Key> mass_scaling_keys() {
+std::vector<Key> mass_scaling_keys(const std::string& kind) {
   using enum Type;
+  const std::string parts = kind == "dem" ? "particles" : "elements";
   return {
-      {"participants.*.mass_scaling", "dem", optional_table, "", none, anything, "mass scaling",
-       "more inertia than the particles have, for a larger time step; static results stay"},
-      {"participants.*.mass_scaling.critical_step", "dem", number, "s", none, in(above_zero),
-       "1e-6", "the critical step that is wished: particles with a smaller one become heavier"},
-      {"participants.*.mass_scaling.factor", "dem", number, "", none, in(from_one), "100.0",
+      {"participants.*.mass_scaling", kind, optional_table, "", none, anything, "mass scaling",
+       "more inertia than the " + parts + " have, for a larger time step; static results stay"},
+      {"participants.*.mass_scaling.critical_step", kind, number, "s", none, in(above_zero), "1e-6",
+       "the critical step that is wished: " + parts + " with a smaller one become heavier"},
+      {"participants.*.mass_scaling.factor", kind, number, "", none, in(from_one), "100.0",
        "instead of critical_step: the factor of all masses"},
   };
 }
@@ -233,12 +234,12 @@ std::vector<Key> motion_keys(const std::string& kind) {
 std::vector<Key> particle_keys() {
   return joined({participant_keys("dem"), particle_set_keys(), packing_keys(), material_keys(),
                  model_of_particles(), tool_keys(), motion_keys("dem"), load_keys(), cluster_keys(),
-                 in_situ_keys("dem"), mass_scaling_keys(), watch_of_particles()});
+                 in_situ_keys("dem"), mass_scaling_keys("dem"), watch_of_particles()});
 }
 
 std::vector<Key> mesh_keys() {
   return joined({participant_keys("fem"), element_keys(), solid_keys(), motion_keys("fem"),
-                 action_keys(), in_situ_keys("fem")});
+                 action_keys(), in_situ_keys("fem"), mass_scaling_keys("fem")});
 }
 
 } // namespace kerf::config

@@ -126,6 +126,8 @@ std::vector<Key> solid_keys() {
        "a of the force -a m v on every node: damping as of Rayleigh, by mass"},
       {"participants.*.damping.local", "fem", number, "", "0.0", in(share), "0.2",
        "the share of the resultant force that opposes the motion"},
+      {"participants.*.damping.kinetic", "fem", flag, "", "false", anything, "true",
+       "stops the body whenever its kinetic energy has passed a peak: a quick way to rest"},
       {own, "fem", optional_table, "", none, anything, "material",
        "the solid of all elements without one of the further materials", live},
       {"participants.*.materials", "fem", list, "", empty, anything, "further material",

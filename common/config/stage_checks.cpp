@@ -90,7 +90,8 @@ private:
   void check_quantity(const string& key, const json& condition, const json& participant) {
     const string quantity = condition["quantity"];
     const bool of_elements = participant["kind"] == "fem";
-    const std::vector<string> known = {"kinetic_ratio", "stress", "displacement", "force"};
+    const std::vector<string> known = {"unbalanced_force", "kinetic_ratio", "stress",
+                                       "displacement", "force"};
     if (of_elements && std::find(known.begin(), known.end(), quantity) == known.end()) {
       problems_.add(key + ".quantity",
                     fmt::format("{}.quantity = \"{}\" is not one of elements.", key, quantity),

@@ -3,8 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace kerf::fem {
 namespace {
@@ -19,11 +17,6 @@ std::size_t find_word(const Table& table, const std::string& key, const Words& w
         table.path(key),
         fmt::format("\"{}\" must be one of {}", table.text(key), fmt::join(words, ", ")));
   return static_cast<std::size_t>(found - words.begin());
-}
-
-double kinetic_ratio(const Energies& energies) {
-  return energies.elastic != 0.0 ? energies.kinetic / std::abs(energies.elastic)
-                                 : std::numeric_limits<double>::infinity();
 }
 
 } // namespace
@@ -44,7 +37,8 @@ std::vector<Condition> read_conditions(const std::vector<Table>& list, const Wat
     c.name = table.text("name");
     table.text("quantity"); // which must be there
     c.quantity = table.one_of<Quantity>("quantity", kinetic_ratio,
-                                        {{"kinetic_ratio", kinetic_ratio},
+                                        {{"unbalanced_force", unbalanced_force},
+                                         {"kinetic_ratio", kinetic_ratio},
                                          {"stress", stress},
                                          {"displacement", displacement},
                                          {"force", force}});
@@ -52,7 +46,7 @@ std::vector<Condition> read_conditions(const std::vector<Table>& list, const Wat
       c.index = find_word(table, "probe", probes);
     if (c.quantity == force)
       c.index = find_word(table, "wall", watch.walls);
-    if (c.quantity != kinetic_ratio)
+    if (c.quantity != unbalanced_force && c.quantity != kinetic_ratio)
       c.component =
           static_cast<int>(find_word(table, "component", c.quantity == stress ? pairs : axes));
     if (table.has("above"))
@@ -69,8 +63,10 @@ std::vector<Condition> read_conditions(const std::vector<Table>& list, const Wat
 template <int dim>
 double value_of(const Condition& condition, const Engine<dim>& engine, const Watch<dim>& watch) {
   switch (condition.quantity) {
+  case Quantity::unbalanced_force:
+    return engine.unbalanced_force();
   case Quantity::kinetic_ratio:
-    return kinetic_ratio(engine.energies());
+    return fem::kinetic_ratio(engine.energies());
   case Quantity::stress:
     return stress_at(watch.probes[condition.index], engine)[condition.component];
   case Quantity::displacement:

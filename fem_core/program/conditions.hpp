@@ -11,10 +11,11 @@
 namespace kerf::fem {
 
 enum class Quantity {
-  kinetic_ratio, // kinetic over the size of the elastic energy, which counts from the start
-  stress,        // a component of a probe, Pa
-  displacement,  // likewise, since the last reset, m
-  force,         // on a wall along an axis, N
+  unbalanced_force, // resultants of what is free over all forces
+  kinetic_ratio,    // kinetic over the size of the elastic energy, which counts from the start
+  stress,           // a component of a probe, Pa
+  displacement,     // likewise, since the last reset, m
+  force,            // on a wall along an axis, N
 };
 using Condition = StopCondition<Quantity>;
 

@@ -156,6 +156,23 @@ nlohmann::json warnings_of(const Engine<dim>& engine, const Table& case_settings
   return warnings;
 }
 
+/// What was added to the masses, for the log and the summary; null when they are not scaled.
+template <int dim> nlohmann::json mass_scaling_of(const Engine<dim>& engine) {
+  if (!engine.settings().mass_scaling)
+    return nullptr;
+  const AddedMass mass = engine.added_mass();
+  spdlog::info("mass scaling: {} of {} elements are heavier, {:.4g} kg are added to {:.4g} kg; "
+               "most of all {}, by a factor of {:.4g}. Waves are slower, weight and static results "
+               "are not changed.",
+               mass.elements, engine.active_elements().size(), mass.added, mass.before,
+               engine.name_of(mass.largest_element), mass.largest_factor);
+  return {{"elements", mass.elements},
+          {"added_mass", mass.added},
+          {"true_mass", mass.before},
+          {"largest_factor", mass.largest_factor},
+          {"largest_factor_element", mass.largest_element}};
+}
+
 template <int dim>
 void run(coupler::Participant& participant, const Table& settings, const Table& case_settings) {
   const auto begin = Clock::now();
@@ -170,6 +187,7 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
   engine.set_weights(plan.weights);
   const coupler::Schedule& schedule = participant.initialize(limits(engine, plan));
   const nlohmann::json warnings = warnings_of(engine, case_settings);
+  const nlohmann::json scaling = mass_scaling_of(engine);
   const coupler::Assignment& assignment = participant.assignment();
   if (assignment.plan_only) {
     participant.finalize(
@@ -194,14 +212,16 @@ void run(coupler::Participant& participant, const Table& settings, const Table& 
   SteppedEngine<dim> stepped(engine, output, stages, watch, is_coupled);
   coupler::run_engine(stepped, participant, plan, schedule, output);
   const double total = seconds_since(begin);
-  const nlohmann::json summary = {{"seconds",
-                                   {{"setup", setup},
-                                    {"steps", total - setup - output.seconds()},
-                                    {"output", output.seconds()}}},
-                                  {"threads", omp_get_max_threads()},
-                                  {"nodes", mesh.num_nodes()},
-                                  {"elements", engine.active_elements().size()},
-                                  {"warnings", warnings}};
+  nlohmann::json summary = {{"seconds",
+                             {{"setup", setup},
+                              {"steps", total - setup - output.seconds()},
+                              {"output", output.seconds()}}},
+                            {"threads", omp_get_max_threads()},
+                            {"nodes", mesh.num_nodes()},
+                            {"elements", engine.active_elements().size()},
+                            {"warnings", warnings}};
+  if (!scaling.is_null())
+    summary["mass_scaling"] = scaling;
   participant.finalize(summary.dump());
 }
 

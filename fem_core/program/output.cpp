@@ -24,7 +24,8 @@ template <int dim> std::vector<Column> history_columns(bool has_stages) {
                                  {"plastic_dissipation", "J"},
                                  {"damping_dissipation", "J"},
                                  {"external_work", "J"},
-                                 {"interface_work", "J"}};
+                                 {"interface_work", "J"},
+                                 {"unbalanced_force", "1"}};
   add_axes(columns, "momentum", "N s", std::string_view("xyz").substr(0, dim));
   if (has_stages)
     columns.push_back({"stage", "1"});
@@ -159,7 +160,7 @@ template <int dim> void Output<dim>::write_history(std::uint64_t step, double ti
                              energies.kinetic,          energies.elastic,
                              energies.hourglass,        energies.dissipated,
                              energies.damped,           energies.external_work,
-                             energies.interface_work};
+                             energies.interface_work,   engine_.unbalanced_force()};
   row.insert(row.end(), momentum.begin(), momentum.end());
   if (!std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
     throw std::runtime_error(

@@ -128,13 +128,19 @@ template <int dim> Settings<dim> read_settings(const Table& participant, const M
   if (participant.has("gravity"))
     settings.gravity = participant.vector<dim>("gravity");
   if (participant.has("damping"))
-    std::tie(settings.mass_damping, settings.local_damping) =
+    std::tie(settings.mass_damping, settings.local_damping, settings.kinetic_damping) =
         read_damping(participant.table("damping"));
+  if (participant.has("mass_scaling")) {
+    const Table scaling = participant.table("mass_scaling");
+    settings.mass_scaling = MassScaling{.critical_step = scaling.number("critical_step", 0.0),
+                                        .factor = scaling.number("factor", 1.0)};
+  }
   return settings;
 }
 
-std::pair<double, double> read_damping(const Table& damping) {
-  return {damping.number("mass", 0.0), damping.number("local", 0.0)};
+std::tuple<double, double, bool> read_damping(const Table& damping) {
+  return {damping.number("mass", 0.0), damping.number("local", 0.0),
+          damping.flag("kinetic", false)};
 }
 
 template <int dim> Watch<dim> read_watch(const Table& participant, const Mesh<dim>& mesh) {

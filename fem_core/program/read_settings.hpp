@@ -7,7 +7,7 @@
 #include "fem_core/settings.hpp"
 
 #include <optional>
-#include <utility>
+#include <tuple>
 
 namespace kerf::fem {
 
@@ -15,8 +15,8 @@ namespace kerf::fem {
 /// @throws coupler::SettingsError
 template <int dim> Settings<dim> read_settings(const Table& participant, const Mesh<dim>& mesh);
 
-/// Damping by mass, 1/s, and the local one.
-std::pair<double, double> read_damping(const Table& damping);
+/// Damping by mass, 1/s, the local share, and whether there is kinetic damping.
+std::tuple<double, double, bool> read_damping(const Table& damping);
 
 /// Probes and names of walls.
 /// @throws coupler::SettingsError

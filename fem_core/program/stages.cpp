@@ -16,7 +16,8 @@ template <int dim> Change<dim> read_change(const Table& table, const Mesh<dim>& 
   if (table.has("gravity"))
     change.gravity = table.vector<dim>("gravity");
   if (table.has("damping"))
-    std::tie(change.mass_damping, change.local_damping) = read_damping(table.table("damping"));
+    std::tie(change.mass_damping, change.local_damping, change.kinetic_damping) =
+        read_damping(table.table("damping"));
   if (const std::vector<Table> list = table.list("boundary");
       !list.empty() || table.flag("release", false))
     change.boundary = read_boundary(list, mesh);

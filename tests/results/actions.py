@@ -260,5 +260,40 @@ walls = [{{ name = "floor", tag = "bottom", point = [0.0, 0.0], normal = [0.0, 1
         self.assertTrue((floor["force_y"] <= 0.0).all() and (floor["force_x"] >= 0.0).all())
 
 
+class Statics(Actions):
+    def test_a_heavier_body_comes_to_the_same_rest_in_fewer_steps(self):
+        # A bar in plane strain under tension that stops at every peak of its kinetic energy, with
+        # its own masses and with four times these, which double the step.
+        tension, length = 1e6, 8 * SIDE  # Pa, m
+        wanted = length * tension * (1 - NU**2) / E
+        steps = []
+        for factor in (1.0, 4.0):
+            scaling = f"mass_scaling = {{ factor = {factor} }}" if factor > 1.0 else ""
+            run = self.run_case(self.write_case(body(f"""
+damping = {{ kinetic = true }}
+{scaling}
+{SYMMETRY}
+[[participants.body.loads]]
+tag = "right"
+traction = [{tension}, 0.0]
+[[participants.body.probes]]
+name = "end"
+point = [{length}, {0.5 * SIDE}]
+""", size=(length, SIDE), count=(16, 2), end=10.0,
+                case='stop = [{ name = "at_rest", quantity = "unbalanced_force", below = 1e-9, '
+                     'after = 1e-3 }]')))
+            history = self.table(run, "body")
+            self.assertLess(history["unbalanced_force"][-1], 1e-9)
+            displacement = self.table(run, "body_end")["displacement_x"][-1]
+            self.assertAlmostEqual(displacement, wanted, delta=1e-7 * wanted)
+            self.assert_balance(run, 1e-9)  # linear: what the stops take is booked
+            steps.append(history["step"][-1])
+            if factor > 1.0:
+                scaled = record(run)["participants"]["body"]["summary"]["mass_scaling"]
+                self.assertEqual(scaled["elements"], 32)
+                self.assertAlmostEqual(scaled["added_mass"], 3 * RHO * length * SIDE, places=6)
+        self.assertLess(steps[1], 0.7 * steps[0])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -168,7 +168,8 @@ TEST(FemSettings, give_regions_and_boxes_materials_of_their_own) {
   table["materials"] = {soft, corner};
   table["plane"] = "axisymmetric";
   table["gravity"] = {0.0, -9.81};
-  table["damping"] = {{"mass", 100.0}, {"local", 0.2}};
+  table["damping"] = {{"mass", 100.0}, {"local", 0.2}, {"kinetic", true}};
+  table["mass_scaling"] = {{"critical_step", 1e-3}, {"factor", nullptr}};
   const Table settings(table, "");
   const Mesh<2> mesh = read_mesh(settings, Period<2>{});
   const Settings<2> read = read_settings(settings, mesh);
@@ -181,6 +182,10 @@ TEST(FemSettings, give_regions_and_boxes_materials_of_their_own) {
   EXPECT_EQ(read.gravity, Vec<2>(0.0, -9.81));
   EXPECT_EQ(read.mass_damping, 100.0);
   EXPECT_EQ(read.local_damping, 0.2);
+  EXPECT_TRUE(read.kinetic_damping);
+  ASSERT_TRUE(read.mass_scaling);
+  EXPECT_EQ(read.mass_scaling->critical_step, 1e-3);
+  EXPECT_EQ(read.mass_scaling->factor, 1.0);
 }
 
 TEST(FemSettings, of_materials_are_refused_with_the_key_that_the_case_has) {
