@@ -151,7 +151,7 @@ TEST(BrokenElements, a_condition_is_of_what_elements_have) {
   };
   expect_told(stop("quantity = \"cracks\""),
               "case.stop[0].quantity = \"cracks\" is not one of elements.\n"
-              "  Fix: give one of kinetic_ratio, stress, displacement, force.");
+              "  Fix: give one of unbalanced_force, kinetic_ratio, stress, displacement, force.");
   expect_told(stop("quantity = \"force\"\ncomponent = \"x\""), "case.stop[0].wall is missing.");
   expect_told(stop("quantity = \"stress\"\nprobe = \"p\"\ncomponent = \"xx\""),
               "case.stop[0].probe = \"p\" is not a probe of the participant.");
