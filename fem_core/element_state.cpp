@@ -86,9 +86,13 @@ template <int dim> ElementState<dim> Engine<dim>::element_state(std::uint32_t el
     for (int k = 0; k < group.law.history; ++k)
       state.history.push_back(mean(group.history, static_cast<std::size_t>(group.law.history),
                                    static_cast<std::size_t>(k)));
-    double volume = 0.0;
-    for (const auto& point : points_of(model.element))
-      volume += point.volume;
+    const auto volume_of = [](const Element<dim>& of) {
+      double sum = 0.0;
+      for (const auto& point : points_of(of))
+        sum += point.volume;
+      return sum;
+    };
+    const double volume = volume_of(model.element);
     // Elastic energy of the mean stress, of an isotropic solid.
     const double young = model.moduli.young(), nu = young / (2.0 * model.moduli.mu) - 1.0;
     const double pressure = trace(state.stress);
@@ -96,8 +100,14 @@ template <int dim> ElementState<dim> Engine<dim>::element_state(std::uint32_t el
                    ((1.0 + nu) * contract(state.stress, state.stress) - nu * pressure * pressure) /
                    (2.0 * young);
     if (group.kinematics == Kinematics::rate) { // stored is Kirchhoff's
-      ElementModel<dim> deformed = deformed_model_of(element);
-      double J = model.density / deformed.density;
+      Element<dim> deformed = model.element;    // where the last forces were computed
+      const auto nodes = mesh_.nodes_of_element(element);
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        const std::uint32_t row = patches_.row_of_node[nodes[a]];
+        deformed.corners.col(static_cast<Eigen::Index>(a)) +=
+            displacement_[row] - (step_ > 0 ? time_step_ : 0.0) * velocity_[row];
+      }
+      double J = volume_of(deformed) / volume;
       if (settings_.plane == Plane::stress) // the strain through the thickness comes last
         J *= std::exp(state.history.back());
       for (int k = 0; k < state.stress.size; ++k)

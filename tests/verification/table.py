@@ -111,9 +111,11 @@ def tests_of(build):
     """-> names of all tests in their order"""
     result = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], check=True,
                             capture_output=True, text=True)
-    # ctest calls a typed test Suite.name<Suite/type. …>, GoogleTest Suite/type.name.
-    return [re.sub(r"^\w+\.(\w+)<(\w+/\w+)\..*>$", r"\2.\1", test["name"])
-            for test in json.loads(result.stdout)["tests"]]
+    # ctest calls a typed test Suite.name<Suite/type. …>, GoogleTest Suite/type.name. The tests of one
+    # program have its name before theirs.
+    names = [test["name"].removeprefix("fem_verification.")
+             for test in json.loads(result.stdout)["tests"]]
+    return [re.sub(r"^\w+\.(\w+)<(\w+/\w+)\..*>$", r"\2.\1", name) for name in names]
 
 
 def main(mode, folder, build):
